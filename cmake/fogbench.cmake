@@ -1,0 +1,35 @@
+# Warnings are errors in every room; nothing outside the project sees these flags.
+add_library(fogbench_warnings INTERFACE)
+target_compile_options(fogbench_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wdouble-promotion -Wimplicit-fallthrough -Werror)
+
+# fogbench_library(<folder> SOURCES a.cpp ... PUBLIC targets... PRIVATE targets...)
+# declares the static library of one room, fogbench::<folder>.
+function(fogbench_library folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(fogbench_${folder} STATIC ${ARG_SOURCES})
+  add_library(fogbench::${folder} ALIAS fogbench_${folder})
+  target_include_directories(fogbench_${folder} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_link_libraries(fogbench_${folder}
+    PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:fogbench_warnings>)
+endfunction()
+
+# fogbench_test(<name> SOURCES a_test.cpp ... LINKS targets... LABEL unit|system|slow)
+# declares one GoogleTest executable whose cases ctest runs one by one.
+function(fogbench_test name)
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LINKS" ${ARGN})
+  if(NOT ARG_LABEL)
+    set(ARG_LABEL unit)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${ARG_LINKS} GTest::gtest_main GTest::gmock fogbench_warnings)
+  target_compile_definitions(${name} PRIVATE
+    FOGBENCH_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FOGBENCH_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
+    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
+endfunction()

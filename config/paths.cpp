@@ -1,0 +1,51 @@
+#include "config/paths.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <vector>
+
+namespace fogbench::config {
+namespace fs = std::filesystem;
+
+Result<fs::path> config_directory() {
+  if (const char* set = std::getenv("FOGBENCH_CONFIG_DIR")) {  // NOLINT(concurrency-mt-unsafe)
+    std::error_code ignored;
+    if (fs::is_directory(set, ignored)) return fs::path(set);
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("FOGBENCH_CONFIG_DIR={}: no such directory", set)};
+  }
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    const fs::path folder = executable.parent_path();
+    for (const fs::path& candidate :
+         {folder / "../../config", folder / "../share/fogbench/config"}) {
+      if (fs::is_directory(candidate / "procedures", error)) return fs::weakly_canonical(candidate);
+    }
+  }
+  return Error{ErrorCode::kBadInput,
+               "the folder with fogbench's ready configuration was not found beside the program; "
+               "name it in FOGBENCH_CONFIG_DIR"};
+}
+
+Result<fs::path> find_config(const std::string& kind, const std::string& name) {
+  std::error_code error;
+  if (fs::is_regular_file(name, error)) return fs::path(name);
+  const auto directory = config_directory();
+  if (!directory) return directory.error();
+  const fs::path folder = *directory / kind;
+  const fs::path candidate = folder / (name + ".json");
+  if (fs::is_regular_file(candidate, error)) return candidate;
+
+  std::vector<std::string> known;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".json") known.push_back(entry.path().stem().string());
+  }
+  std::sort(known.begin(), known.end());
+  return Error{ErrorCode::kBadInput, fmt::format("{}: no such file, and none of the ready {} ({})",
+                                                 name, kind, fmt::join(known, ", "))};
+}
+
+}  // namespace fogbench::config

@@ -1,0 +1,21 @@
+#pragma once
+// Where the ready benches, devices, procedures, models and scenarios are, and how a short name
+// finds its file.
+
+#include <filesystem>
+#include <string>
+
+#include "config/result.hpp"
+
+namespace fogbench::config {
+
+/// $FOGBENCH_CONFIG_DIR; else the config folder beside the executable's build tree
+/// (<exe>/../../config); else <exe>/../share/fogbench/config. kBadInput when none exists.
+Result<std::filesystem::path> config_directory();
+
+/// A file as the user named it: an existing path, or a name in config_directory()/kind
+/// ("acceptance" -> procedures/acceptance.json). kBadInput with both places tried, and the names
+/// that exist.
+Result<std::filesystem::path> find_config(const std::string& kind, const std::string& name);
+
+}  // namespace fogbench::config

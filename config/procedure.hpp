@@ -1,0 +1,131 @@
+#pragma once
+// The procedure language: a closed vocabulary of steps in the field's own words, as data
+// (config/procedures/*.json). Checks, expansion and execution are procedures/'s.
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/result.hpp"
+#include "config/units.hpp"
+
+namespace fogbench::config {
+
+/// A number, or the name of a parameter that stands for one ("$temperature_c").
+using Number = std::variant<double, std::string>;
+/// A list of numbers, or the name of a parameter that holds one ("$levels_ut").
+using NumberList = std::variant<std::vector<double>, std::string>;
+
+enum class HeatingMode { kOff, kBoost, kNormal };
+enum class Axis { kX, kY, kZ };
+
+struct Step;
+
+/// {"step": "set_temperature", "target_c": 31, "mode": "boost"}; mode off needs no target.
+struct SetTemperature {
+  Number target_c = 0.0;
+  HeatingMode mode = HeatingMode::kOff;
+};
+
+/// Waits until the temperature has stayed within band_c of the target for dwell_s with a slope
+/// below slope_c_per_h; gives up after timeout_s. With a segment, consecutive averages of
+/// window_s are recorded under it meanwhile: the transients, from which dT/dt is learned.
+struct SettleTemperature {
+  Number band_c = 0.1;
+  Number dwell_s = 300.0;
+  Number slope_c_per_h = 1.0;
+  Number timeout_s = 7200.0;
+  std::string segment;
+  Number window_s = 60.0;
+};
+
+/// Waits until `operating_time_s` have passed since the gyro's power-on, or for `duration_s`.
+/// Records like SettleTemperature when it has a segment.
+struct Wait {
+  Number duration_s = 0.0;
+  Number operating_time_s = 0.0;
+  std::string segment;
+  Number window_s = 60.0;
+};
+
+/// One averaged measurement of the gyro with everything else read meanwhile.
+struct Average {
+  Number duration_s = 60.0;
+  std::string segment;
+};
+
+/// An average that later points of this test are reported against.
+struct Baseline {
+  Number duration_s = 60.0;
+  std::string segment;
+};
+
+/// Nulls the measured field on the two coil axes to within tolerance_ut.
+struct CompensateField {
+  Number tolerance_ut = 0.2;
+};
+
+/// Drives the field along one gyro axis through `levels_ut` from the compensated zero, one average
+/// each. Always indivisible: after any interruption it restarts from its first level.
+struct Sweep {
+  Axis axis = Axis::kX;
+  NumberList levels_ut;
+  Number duration_s = 180.0;
+  Number settle_s = 5.0;
+  std::string segment;  ///< "coil_x"; the branch is appended: /up, /down, /return
+};
+
+/// Turns the gyro to an azimuth: by motor, or by asking the operator.
+struct Rotate {
+  Number azimuth_deg = 0.0;
+};
+
+/// Asks the operator to do or confirm something.
+struct Prompt {
+  std::string text;
+};
+
+/// Runs another procedure; `test` marks its points as test 1, 2...
+struct Call {
+  std::string procedure;
+  std::map<std::string, Number> parameters;
+  int test = 0;
+};
+
+/// Runs `steps` once for each value of `in`, bound to the parameter `variable`.
+struct ForEach {
+  std::string variable;
+  NumberList in;
+  std::vector<Step> steps;
+};
+
+/// Restarts from its first step after any interruption.
+struct Indivisible {
+  std::vector<Step> steps;
+};
+
+struct Step {
+  std::variant<SetTemperature, SettleTemperature, Wait, Average, Baseline, CompensateField, Sweep,
+               Rotate, Prompt, Call, ForEach, Indivisible>
+      action;
+  std::string pointer;  ///< JSON pointer of the step, for messages
+};
+
+/// A parameter's default: a number or a list of numbers.
+using ParameterValue = std::variant<double, std::vector<double>>;
+
+struct ProcedureConfig {
+  std::string name;
+  std::string description;
+  std::map<std::string, ParameterValue> parameters;
+  std::vector<Step> steps;
+  std::filesystem::path file;
+};
+
+/// Errors: kBadInput, one line with the file and the JSON pointer.
+Result<ProcedureConfig> load_procedure(const std::filesystem::path& file);
+
+}  // namespace fogbench::config

@@ -1,0 +1,145 @@
+#pragma once
+// What a bench can do, whatever the make of its instruments. Implementations are in drivers/ and
+// speak through the transports; nothing here may be called from two threads at once, and only the
+// run engine commands.
+//
+// Errors of every call: kTimeout, kDevice, kProtocol, kStale, and kLimit for a request outside the
+// instrument's stated limits, which is refused before it reaches the wire.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/procedure.hpp"
+#include "config/result.hpp"
+#include "config/units.hpp"
+#include "drivers/clock.hpp"
+
+namespace fogbench::drivers {
+
+using config::Ampere;
+using config::Celsius;
+using config::DegPerHour;
+using config::Degree;
+using config::HeatingMode;
+using config::Microtesla;
+using config::Watt;
+
+/// Instruments cannot be copied: there is one of each on the bench.
+class Instrument {
+ public:
+  Instrument() = default;
+  Instrument(const Instrument&) = delete;
+  Instrument& operator=(const Instrument&) = delete;
+  virtual ~Instrument() = default;
+  /// What it says it is, for the record ("KEPCO,BOP ...", or the map's name where it cannot say).
+  virtual Result<std::string> identity() = 0;
+};
+
+struct ThermostatReading {
+  Clock::Instant taken_at{};
+  Celsius working_1, working_2;  ///< the two working sensors on the coil carrier
+  Celsius control;               ///< the third sensor: checks the other two
+  Celsius ambient;
+  Celsius target;
+  HeatingMode mode = HeatingMode::kOff;
+  Watt boost_power, normal_power;
+};
+
+class Thermostat : public Instrument {
+ public:
+  /// Both are read back; a difference is kDevice.
+  virtual Status set_target(Celsius target) = 0;
+  virtual Status set_mode(HeatingMode mode) = 0;
+  virtual Result<ThermostatReading> read() = 0;
+};
+
+struct CoilReading {
+  Clock::Instant taken_at{};
+  Ampere set;
+  Ampere measured;
+};
+
+/// One pair of coils' bipolar current source.
+class CoilSupply : public Instrument {
+ public:
+  /// Programs 0 A, then switches the output on.
+  virtual Status enable() = 0;
+  /// Waits for the output to settle and reads it back; kDevice when it does not follow.
+  virtual Status set_current(Ampere current) = 0;
+  virtual Result<CoilReading> read() = 0;
+  /// 0 A, read back, output off.
+  virtual Status make_safe() = 0;
+};
+
+struct FieldReading {
+  Clock::Instant taken_at{};
+  std::array<Microtesla, 3> field;  ///< calibrated, gyro axes x, y, z
+};
+
+class Magnetometer : public Instrument {
+ public:
+  virtual Result<FieldReading> read() = 0;
+};
+
+class Turntable : public Instrument {
+ public:
+  /// Returns when the gyro stands at the azimuth.
+  virtual Status rotate_to(Degree azimuth) = 0;
+  virtual Result<Degree> azimuth() = 0;
+};
+
+/// Whoever turns the gyro by hand or confirms a step. Returns false when they decline.
+class Operator {
+ public:
+  virtual ~Operator() = default;
+  virtual Result<bool> confirm(const std::string& prompt) = 0;
+};
+
+/// Good frames of the stream, one entry each in every vector. `index` counts frames since the
+/// stream's start, lost ones too (unwrapped sequence number): a jump in it is a gap.
+struct GyroBlock {
+  std::vector<std::int64_t> index;
+  std::vector<float> rate_deg_per_h;  ///< as the instrument says, no reference rate subtracted
+  std::vector<float> temperature_c;   ///< empty when frames carry none
+  void clear() {
+    index.clear();
+    rate_deg_per_h.clear();
+    temperature_c.clear();
+  }
+};
+
+/// What happened on the line since the stream was opened.
+struct StreamStatistics {
+  std::uint64_t frames_good = 0;
+  std::uint64_t frames_bad_checksum = 0;
+  std::uint64_t frames_invalid = 0;  ///< status said that the reading is not valid
+  std::uint64_t frames_repeated = 0;
+  std::uint64_t frames_missing = 0;  ///< by sequence number (bad and invalid ones included)
+  std::uint64_t bytes_skipped = 0;   ///< thrown away while looking for a header
+};
+
+class Gyro : public Instrument {
+ public:
+  /// Appends every good frame that has arrived by now to `out` (nothing new: appends nothing).
+  /// kTimeout when the stream has been silent for longer than it may.
+  virtual Status read(GyroBlock& out) = 0;
+  virtual const StreamStatistics& statistics() const = 0;
+  /// When frame `index` was measured (middle of its sample), from the counter, not from arrival.
+  virtual Clock::Instant time_of(std::int64_t index) const = 0;
+  virtual double frame_rate_hz() const = 0;
+};
+
+/// The instruments of one bench.
+struct Bench {
+  std::unique_ptr<Thermostat> thermostat;
+  std::unique_ptr<CoilSupply> coil_horizontal;
+  std::unique_ptr<CoilSupply> coil_vertical;
+  std::unique_ptr<Magnetometer> magnetometer;
+  std::unique_ptr<Turntable> turntable;
+  std::unique_ptr<Gyro> gyro;
+};
+
+}  // namespace fogbench::drivers

@@ -1,0 +1,57 @@
+#pragma once
+// The catalogue of physical effects. One effect is one small file in model/effects/, with its
+// identifier, formula, signals, inner parameters and source; it registers itself in the list of
+// catalogue.cpp.
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/result.hpp"
+#include "model/signals.hpp"
+
+namespace fogbench::model {
+
+/// A parameter that the rate is not linear in.
+struct InnerParameter {
+  std::string_view name;  ///< "width", "tau", "t0", "period", "hs"
+  std::string_view unit;
+  double minimum;  ///< typical range: the search grid's ends
+  double maximum;
+  bool logarithmic = true;  ///< spacing of the grid
+};
+
+struct EffectInfo {
+  std::string_view id;
+  std::string_view formula;               ///< "play_w(h_z)", for people
+  std::vector<std::string_view> columns;  ///< of the regressor: {""} or {"cos", "sin"}
+  std::vector<std::string_view> units;    ///< of each column's coefficient
+  std::vector<std::string_view> signals;  ///< table columns needed ("temperature_c")
+  std::vector<InnerParameter> parameters;
+  std::string_view excited_by;
+  std::string_view confused_with;
+  std::string_view source;
+};
+
+/// An effect's regressor on a table's signals.
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  virtual const EffectInfo& info() const = 0;
+  /// rows x info().columns.size(); NaN where a needed signal is missing. `inner` in the order of
+  /// info().parameters. Precondition: signals.missing_for(info()) is empty.
+  virtual Eigen::MatrixXd regressor(const Signals& signals,
+                                    std::span<const double> inner) const = 0;
+};
+
+/// All effects, in the order of the documentation.
+std::span<const Effect* const> catalogue();
+/// Null when there is no such effect.
+const Effect* find_effect(std::string_view id);
+
+}  // namespace fogbench::model

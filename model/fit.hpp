@@ -1,0 +1,68 @@
+#pragma once
+// Fits an error model to a table.
+//
+//   y_i = sum_k beta_k g_k(x_i; a) + e_i
+//
+// Linear coefficients beta by QR, inner parameters a by variable projection (Ceres) over the
+// projected residual. The noise e is one of: independent with one unknown sigma; independent with
+// sigma proportional to a weight column; coloured (noise.hpp), estimated by REML with the fit.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "config/model_file.hpp"
+#include "config/result.hpp"
+#include "model/noise.hpp"
+#include "model/table.hpp"
+
+namespace fogbench::model {
+
+struct FitOptions {
+  enum class Noise {
+    kAuto,  ///< coloured when the table has time_s and duration_s and rows enough, else independent
+    kIndependent,
+    kColoured
+  };
+  Noise noise = Noise::kAuto;
+  std::string weight_by;  ///< a column of standard deviations; empty: none
+  bool as_is = false;     ///< hold every given coefficient, fit nothing
+};
+
+/// One fitted number: a coefficient or an inner parameter.
+struct Estimate {
+  std::string name;  ///< "magnetic_linear_z", "earth_rate_projection.cos", "warm_up.tau"
+  std::string unit;
+  double value = 0.0;
+  double standard_error = 0.0;   ///< NaN when not determined; 0 when held
+  double coverage_factor = 2.0;  ///< expanded uncertainty = factor * standard error (95.45 %)
+  bool held = false;
+};
+
+struct FitResult {
+  config::ModelFile fitted;  ///< with coefficients, covariance, noise: a valid input again
+  std::vector<Estimate> estimates;
+  Eigen::MatrixXd covariance;     ///< of the estimates that are not held, in their order
+  std::vector<std::size_t> rows;  ///< which rows of the table took part (no NaN in what is needed)
+  Eigen::VectorXd predicted;      ///< one per taken row
+  Eigen::VectorXd residual;       ///< observed - predicted
+  Eigen::VectorXd standard_deviation;  ///< what the noise model expects of each residual
+  Eigen::VectorXd whitened;            ///< residual in units of its noise, correlation removed
+  NoiseEstimate noise;
+  bool coloured = false;
+  double rms = 0.0;  ///< sqrt(mean residual^2), unit of the observable
+  double residual_sum_of_squares = 0.0;
+  double residual_standard_deviation = 0.0;  ///< sqrt(RSS / dof)
+  double degrees_of_freedom = 0.0;
+  std::vector<std::string> warnings;  ///< rank deficiency, inner parameter at its edge, ...
+};
+
+/// Errors: kBadInput: unknown effect, missing column (named), no rows, fewer rows than terms,
+/// rank deficiency is a warning with the terms named.
+Result<FitResult> fit(const Table& table, const config::ModelFile& model,
+                      const FitOptions& options);
+
+/// Values of the model on the table, NaN where a signal is missing. All coefficients must be given.
+Result<Eigen::VectorXd> predict(const Table& table, const config::ModelFile& model);
+
+}  // namespace fogbench::model

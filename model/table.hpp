@@ -1,0 +1,59 @@
+#pragma once
+// A measurement table: named columns of numbers (NaN is missing), with the run and the segment of
+// each row. Rows are in time order within a run.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/result.hpp"
+
+namespace fogbench::model {
+
+/// Texts of one column, stored once each: a table has millions of rows and a few segments.
+struct TextColumn {
+  std::vector<std::string> values;
+  std::vector<std::uint32_t> index;  ///< one per row, into values
+  const std::string& at(std::size_t row) const { return values[index[row]]; }
+};
+
+class Table {
+ public:
+  std::size_t rows() const { return rows_; }
+  bool has(std::string_view name) const;
+  /// Precondition: has(name). One value per row.
+  std::span<const double> column(std::string_view name) const;
+  std::vector<std::string> column_names() const;
+
+  /// "1" and "" for every row where the source has no such column.
+  const TextColumn& run() const { return run_; }
+  const TextColumn& segment() const { return segment_; }
+
+  /// Precondition: as many values as rows, or the table is empty.
+  void set_column(std::string name, std::vector<double> values);
+  void set_run(TextColumn run);
+  void set_segment(TextColumn segment);
+
+  /// Rows for which `keep` is true, in their order.
+  Table select(const std::vector<bool>& keep) const;
+  /// Appends the other's rows; columns that one side lacks are NaN there.
+  void append(const Table& other);
+
+ private:
+  std::size_t rows_ = 0;
+  std::map<std::string, std::vector<double>, std::less<>> columns_;
+  TextColumn run_, segment_;
+};
+
+/// Reads CSV: first line names, comma-separated, '.' decimals, empty or NaN missing, lines at most
+/// 1 MiB. `renames` maps a wanted name to the file's ("rate_deg_per_h" -> "omega").
+/// Text in a column of numbers is kBadInput with file, line and column, except in columns that are
+/// not of the measurement table (kept only when numeric).
+Result<Table> read_csv(const std::filesystem::path& file,
+                       const std::map<std::string, std::string>& renames = {});
+
+}  // namespace fogbench::model

@@ -1,0 +1,91 @@
+#pragma once
+// A procedure made ready: parameters bound, loops unrolled, called procedures inlined, limits
+// checked and the duration estimated, before anything is touched.
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/bench.hpp"
+#include "config/procedure.hpp"
+#include "config/result.hpp"
+
+namespace fogbench::procedures {
+
+using config::Axis;
+using config::Celsius;
+using config::Degree;
+using config::HeatingMode;
+using config::Microtesla;
+using config::Seconds;
+
+// The engine's instructions: config's steps with every number resolved.
+struct SetTemperature {
+  Celsius target;
+  HeatingMode mode = HeatingMode::kOff;
+};
+struct SettleTemperature {
+  Celsius band;
+  Seconds dwell;
+  double slope_c_per_h;
+  Seconds timeout;
+  std::string segment;
+  Seconds window;
+};
+struct Wait {
+  Seconds duration;
+  Seconds operating_time;
+  std::string segment;
+  Seconds window;
+};
+struct Average {
+  Seconds duration;
+  std::string segment;
+  bool baseline = false;
+};
+struct CompensateField {
+  Microtesla tolerance;
+};
+/// One level of a sweep: field set, settled, averaged.
+struct SweepLevel {
+  Axis axis;
+  Microtesla level;
+  Seconds duration;
+  Seconds settle;
+  std::string segment;
+};
+struct Rotate {
+  Degree azimuth;
+};
+struct Prompt {
+  std::string text;
+};
+
+struct PlannedStep {
+  std::variant<SetTemperature, SettleTemperature, Wait, Average, CompensateField, SweepLevel,
+               Rotate, Prompt>
+      action;
+  std::string path;  ///< "3.2": place in the procedure
+  std::string says;  ///< a sentence with units, for plan and progress
+  int test = 1;
+  /// Steps of one indivisible block share its number; 0 is none. After an interruption a block
+  /// restarts from its first step.
+  int block = 0;
+  Seconds estimate{0.0};
+};
+
+struct Plan {
+  std::string procedure;
+  std::vector<PlannedStep> steps;
+  Seconds estimate{0.0};
+  std::vector<std::string> limits_met;  ///< one sentence each: what was checked, and by how much
+};
+
+/// Errors: kBadInput (unknown parameter, unknown or recursive procedure, wrong type) and kLimit
+/// (temperature, field, current, run time outside the bench's), one line with the procedure's file
+/// and the step's JSON pointer. `overrides` replace the procedure's parameter defaults.
+Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
+                       const std::map<std::string, config::ParameterValue>& overrides = {});
+
+}  // namespace fogbench::procedures

@@ -1,0 +1,84 @@
+#pragma once
+// Executes a plan on a bench. Single-threaded: run() blocks until the bench is in its safe state.
+//
+//            start            pause            resume
+//   kIdle ─────────► kRunning ──────► kPaused ────────► kRunning
+//                       │  step fails / abort / done        │ abort
+//                       ▼                                   ▼
+//                   kStopping (coils to 0 A, heaters off, both read back)
+//                       │
+//                       ▼
+//            kCompleted | kAborted | kFailed
+//
+// The states and events are a transition table in run_engine.cpp; an event that the table does not
+// list for a state is refused.
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "config/bench.hpp"
+#include "config/result.hpp"
+#include "drivers/clock.hpp"
+#include "drivers/instruments.hpp"
+#include "procedures/plan.hpp"
+#include "procedures/recorder.hpp"
+
+namespace fogbench::procedures {
+
+enum class RunState { kIdle, kRunning, kPaused, kStopping, kCompleted, kAborted, kFailed };
+
+/// What a display needs; delivered on the thread of run().
+struct Progress {
+  RunState state = RunState::kIdle;
+  std::size_t step = 0;  ///< index into the plan
+  std::size_t steps = 0;
+  std::string says;
+  Seconds elapsed{0.0};    ///< on the bench's clock
+  Seconds remaining{0.0};  ///< the plan's estimate, corrected as steps end
+};
+
+struct RunSummary {
+  std::int64_t run = 0;
+  RunEnd end;
+  std::size_t points = 0;
+};
+
+class RunEngine {
+ public:
+  /// All must outlive the engine. `clock` is the one the bench was opened with.
+  RunEngine(const config::BenchConfig& config, drivers::Bench& bench, drivers::Clock& clock,
+            drivers::Operator& operator_, Recorder& recorder);
+
+  void on_progress(std::function<void(const Progress&)> observer);
+  void on_point(std::function<void(const Point&)> observer);  ///< after it is on disk
+
+  /// Ends in the safe state whatever happens. An error is returned only when the run could not
+  /// be recorded or begun; a failed or aborted run is a RunSummary that says so.
+  Result<RunSummary> run(const Plan& plan, const RunHeader& header);
+
+  // Thread- and signal-safe requests; take effect at the next tick (abort) or the next divisible
+  // place (pause).
+  void request_abort() { abort_requested_ = true; }
+  void request_pause() { pause_requested_ = true; }
+  void request_resume() { pause_requested_ = false; }
+
+ private:
+  const config::BenchConfig& config_;
+  drivers::Bench& bench_;
+  drivers::Clock& clock_;
+  drivers::Operator& operator_;
+  Recorder& recorder_;
+  std::function<void(const Progress&)> progress_;
+  std::function<void(const Point&)> point_;
+  std::atomic<bool> abort_requested_{false};
+  std::atomic<bool> pause_requested_{false};
+};
+
+/// Coils to 0 A and read back, heaters off and read back: the one routine for abort, fault, signal,
+/// start-up after an unclean end, and the normal end. Tries every instrument even when one fails;
+/// the error then names all that failed.
+Status make_safe(drivers::Bench& bench);
+
+}  // namespace fogbench::procedures

@@ -1,0 +1,1 @@
+// Placeholder unit so that the library exists until its first source lands.
