@@ -1,3 +1,62 @@
-int main() {
-  return 0;
+// fogbench: the command line. Each command is one file; this one reads the command line, runs the
+// command that it names and turns an error into one line and an exit status.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "cli/command.hpp"
+#include "cli/output.hpp"
+
+namespace {
+
+constexpr auto kDescription =
+    "fogbench - acceptance tests of fiber-optic gyros in thermal and magnetic fields, and the\n"
+    "error model that goes with them. Results go to stdout, progress and messages to stderr.\n";
+
+constexpr auto kFooter =
+    "Exit status: 0 done, 1 the answer is no, 2 usage, 3 bad input, 4 bench or run log failed.\n"
+    "`fogbench COMMAND --help` shows a command's options and examples.";
+
+void add_commands(CLI::App& app, fogbench::cli::Action& action) {
+  fogbench::cli::add_runs(app, action);
+}
+
+int run(int argc, char** argv) {
+  using fogbench::ExitStatus;
+  CLI::App app{kDescription, "fogbench"};
+  app.footer(kFooter);
+  app.set_version_flag("--version", "fogbench " FOGBENCH_VERSION);
+  fogbench::cli::Action action;
+  add_commands(app, action);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {  // --help, --version
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    fogbench::cli::print_error(std::string(error.what()) + " (see fogbench --help)");
+    return static_cast<int>(ExitStatus::kUsage);
+  }
+
+  if (!action) {
+    fogbench::cli::print_error("a command is expected; fogbench --help lists them");
+    return static_cast<int>(ExitStatus::kUsage);
+  }
+  const auto status = action();
+  if (!status) {
+    fogbench::cli::print_error(status.error().message);
+    return static_cast<int>(fogbench::config::exit_status(status.error().code));
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    fogbench::cli::print_error("the results could not be written to standard output");
+    return static_cast<int>(ExitStatus::kFailed);
+  }
+  return static_cast<int>(*status);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run(argc, argv);
 }

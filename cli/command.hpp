@@ -1,0 +1,40 @@
+#pragma once
+// The seam between main and the commands: one file per command, cli/<command>.cpp, which declares
+// its options on a subcommand and leaves what to do once the command line has been read.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "config/exit_status.hpp"
+#include "config/result.hpp"
+
+namespace fogbench::cli {
+
+/// What the chosen command does. An error is printed as one line by main, which maps it to the
+/// exit status; a result that is an answer "no" is ExitStatus::kNo.
+using Action = std::function<Result<ExitStatus>()>;
+
+/// Adds `name` with the options that `declare` binds to one Options value, and has `run` called
+/// with them when the user chose this command. `examples` stand at the end of its --help.
+///
+///   add_command<FitOptions>(app, action, "fit", "Fit an error model to measurements",
+///                           "  fogbench fit 7 --model magnetic -o fitted.json",
+///                           [](CLI::App& command, FitOptions& options) {...}, run_fit);
+template <class Options, class Declare>
+void add_command(CLI::App& app, Action& action, const std::string& name,
+                 const std::string& description, const std::string& examples, Declare declare,
+                 Result<ExitStatus> (*run)(const Options&)) {
+  const auto options = std::make_shared<Options>();  // shared by the parser and the action
+  CLI::App* command = app.add_subcommand(name, description);
+  command->footer("Examples:\n" + examples);
+  declare(*command, *options);
+  command->callback([&action, options, run] { action = [options, run] { return run(*options); }; });
+}
+
+// The commands, in the order in which --help lists them. Each is defined in its own file.
+void add_runs(CLI::App& app, Action& action);
+
+}  // namespace fogbench::cli

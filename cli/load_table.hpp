@@ -1,0 +1,30 @@
+#pragma once
+// The DATA argument that the model's commands share: a run of the store, or a CSV file.
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "config/result.hpp"
+#include "model/table.hpp"
+
+namespace fogbench::cli {
+
+struct DataOptions {
+  std::vector<std::string> data;     ///< each "7", "STORE.db#7" or "file.csv"
+  std::vector<std::string> columns;  ///< "wanted=name"
+  std::string segment;               ///< glob; empty: every row
+  std::string store;                 ///< for bare run numbers; empty: the default store
+};
+
+enum class DataCount { kOne, kSeveral };
+
+/// Declares DATA, --column, --segment and --store on a command.
+void add_data_options(CLI::App& command, DataOptions& options, DataCount count = DataCount::kOne);
+
+/// The tables one after the other. With several, the run of each row is "DATA/run", so that test 1
+/// of two records stays two runs.
+/// Errors: kBadInput (no such file or run, not CSV, no row matches the segment), kStore.
+Result<model::Table> load_table(const DataOptions& options);
+
+}  // namespace fogbench::cli

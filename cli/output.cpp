@@ -1,0 +1,94 @@
+#include "cli/output.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace fogbench::cli {
+
+TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+
+void TextTable::add_row(std::vector<std::string> cells) {
+  assert(cells.size() == columns_.size());
+  rows_.push_back(std::move(cells));
+}
+
+std::string TextTable::text() const {
+  std::vector<std::string> titles, units;
+  for (const Column& column : columns_) {
+    titles.push_back(column.title);
+    units.push_back(column.unit);
+  }
+  const bool any_unit = std::any_of(units.begin(), units.end(), [](auto& u) { return !u.empty(); });
+
+  std::vector<std::size_t> widths(columns_.size(), 0);
+  const auto widen = [&](const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
+  };
+  widen(titles);
+  widen(units);
+  for (const auto& row : rows_) widen(row);
+
+  std::string out;
+  const auto write = [&](const std::vector<std::string>& cells) {
+    std::string line;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (i > 0) line += "  ";
+      line += columns_[i].align == Align::kRight ? fmt::format("{:>{}}", cells[i], widths[i])
+                                                 : fmt::format("{:<{}}", cells[i], widths[i]);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + '\n';
+  };
+  write(titles);
+  if (any_unit) write(units);
+  std::size_t total = columns_.empty() ? 0 : 2 * (columns_.size() - 1);
+  for (const std::size_t width : widths) total += width;
+  out += std::string(total, '-') + '\n';
+  for (const auto& row : rows_) write(row);
+  return out;
+}
+
+std::string fixed(double value, int decimals) {
+  return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
+}
+
+std::string with_error(double value, double standard_error) {
+  if (!std::isfinite(standard_error) || standard_error <= 0.0) {
+    return std::isnan(value) ? "-" : fmt::format("{:.6g}", value);
+  }
+  const int decimals =
+      std::clamp(1 - static_cast<int>(std::floor(std::log10(standard_error))), 0, 9);
+  return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, standard_error, decimals);
+}
+
+std::string duration_text(double seconds) {
+  if (!std::isfinite(seconds)) return "-";
+  const auto whole = static_cast<long long>(std::llround(std::max(seconds, 0.0)));
+  if (whole < 120) return fmt::format("{} s", whole);
+  if (whole < 7200) return fmt::format("{} min", (whole + 30) / 60);
+  const long long minutes = (whole + 30) / 60;
+  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+void print_json(const nlohmann::json& document) {
+  fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void print_error(const std::string& message) {
+  std::string line = message;
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  fmt::print(stderr, "fogbench: {}\n", line);
+}
+
+bool progress_wanted() {
+  return isatty(STDERR_FILENO) == 1;
+}
+
+}  // namespace fogbench::cli

@@ -1,0 +1,52 @@
+#pragma once
+// How results are printed: tables of text with the units in the heading, or one JSON document.
+// Results go to stdout; logs, progress and errors go to stderr.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "config/result.hpp"
+
+namespace fogbench::cli {
+
+/// Columns padded to their widest cell; numbers to the right, so that their units line up.
+class TextTable {
+ public:
+  enum class Align { kLeft, kRight };
+  struct Column {
+    std::string title;
+    std::string unit;  ///< printed under the title; may be empty
+    Align align = Align::kRight;
+  };
+
+  explicit TextTable(std::vector<Column> columns);
+  /// Precondition: one cell per column.
+  void add_row(std::vector<std::string> cells);
+  bool empty() const { return rows_.empty(); }
+  /// Heading, units (when any column has one), a rule and the rows, each line ended.
+  std::string text() const;
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// `value` with that many decimals; "-" for NaN (missing).
+std::string fixed(double value, int decimals);
+/// Value and one standard error to two digits of the error: "0.0123 +- 0.0045".
+std::string with_error(double value, double standard_error);
+/// Seconds as a person says them: "45 s", "12 min", "2 h 05 min".
+std::string duration_text(double seconds);
+
+/// One document and a newline on stdout. NaN becomes null, bytes that are not UTF-8 a question
+/// mark.
+void print_json(const nlohmann::json& document);
+
+/// One line "fogbench: ..." on stderr.
+void print_error(const std::string& message);
+
+/// True when stderr is a terminal, so that a progress line may overwrite itself there.
+bool progress_wanted();
+
+}  // namespace fogbench::cli
