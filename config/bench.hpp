@@ -58,7 +58,21 @@ struct BenchLimits {
   Celsius temperature_minimum{15.0};
   Celsius temperature_maximum{60.0};
   Microtesla field_maximum{320.0};
+  /// The ambient field that compensation may have to null along one axis: a sweep's current is
+  /// checked with it on top. Mid-latitudes have 50 uT along the vertical.
+  Microtesla compensation_maximum{55.0};
+  /// The control sensor farther than this from the working sensors' mean is a recorded warning.
+  Celsius sensor_disagreement{1.0};
   Seconds run_time_maximum{172800.0};
+};
+
+/// How long things take on this bench, for a plan's estimate; the run itself waits for evidence.
+struct EstimateConfig {
+  CelsiusPerHour heating{30.0};
+  CelsiusPerHour cooling{10.0};
+  Seconds settling{900.0};     ///< from arriving near a temperature to the start of the dwell
+  Seconds compensation{15.0};  ///< nulling the ambient field
+  Seconds operator_answer{60.0};
 };
 
 /// True plant of the simulated bench. All typical values are from the literature (heat capacities,
@@ -124,6 +138,7 @@ struct BenchConfig {
   TurntableConfig turntable;
   GyroConfig gyro;
   BenchLimits limits;
+  EstimateConfig estimates;
   SimulationConfig simulation;
 };
 

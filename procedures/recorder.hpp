@@ -44,6 +44,7 @@ enum class PointKind { kBaseline, kAverage, kTransient };
 struct Point {
   PointKind kind = PointKind::kAverage;
   int test = 1;
+  int block = 0;  ///< of the indivisible block that it belongs to; 0 is none
   std::string segment;
   double time_s = 0.0;  ///< centre of the window
   double duration_s = 0.0;
@@ -100,6 +101,9 @@ class Recorder {
   virtual Status event(double time_s, const std::string& severity, const std::string& message,
                        const std::string& data_json) = 0;
   virtual Status point(const Point& point) = 0;
+  /// An indivisible block was interrupted and restarts from its first step: every point recorded
+  /// for it so far stays on record but is void, and takes no part in results or exports.
+  virtual Status void_block(int block, double time_s, const std::string& reason) = 0;
   virtual Status monitor(const MonitorRow& row) = 0;
   virtual Status gyro_samples(const drivers::GyroBlock& block) = 0;
   virtual Status end_run(const RunEnd& end) = 0;
