@@ -1,0 +1,49 @@
+#pragma once
+// The rules of the house, each a function from the tree to the sentences that say who broke it.
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/architecture/source_tree.hpp"
+
+namespace fogbench::tests {
+
+using Tree = std::vector<SourceFile>;
+using Violations = std::vector<std::string>;
+
+/// Which other rooms each room may see. The arrows of ARCHITECTURE.md, and nothing else.
+inline const std::map<std::string, std::set<std::string>, std::less<>> kMaySee{
+    {"config", {}},
+    {"drivers", {"config"}},
+    {"simulator", {"drivers", "config"}},
+    {"procedures", {"drivers", "config"}},
+    {"model", {"config"}},
+    {"daemon", {"procedures", "simulator", "model", "drivers", "config"}},
+    {"cli", {"daemon", "procedures", "simulator", "model", "drivers", "config"}},
+};
+
+inline constexpr std::size_t kMostLines = 400;
+
+/// Every quoted include is rooted at the repository, exists, and is one that its folder may see.
+Violations forbidden_includes(const Tree& tree);
+/// A room links no room that it may not see, and links every room that it includes.
+Violations wrong_links(const Tree& tree);
+/// Every .cpp is named in the CMakeLists.txt nearest above it.
+Violations unlisted_sources(const Tree& tree);
+/// C++ lives in the rooms and in tests/, nowhere else.
+Violations homeless_sources(const Tree& tree);
+/// Rooms ask the Clock for time (drivers/clock.* alone asks the machine), and draw random numbers
+/// from a seed.
+Violations machine_time_or_chance(const Tree& tree);
+/// Devices are commanded by the run engine alone.
+Violations commands_outside_the_engine(const Tree& tree);
+/// Errors are returned as Result; nobody throws.
+Violations thrown_exceptions(const Tree& tree);
+/// No file is longer than kMostLines.
+Violations long_files(const Tree& tree);
+/// Nothing is put off, and no test is switched off.
+Violations unfinished_work(const Tree& tree);
+
+}  // namespace fogbench::tests
