@@ -68,6 +68,7 @@ struct BenchLimits {
 
 /// How long things take on this bench, for a plan's estimate; the run itself waits for evidence.
 struct EstimateConfig {
+  Celsius room{21.0};
   CelsiusPerHour heating{30.0};
   CelsiusPerHour cooling{10.0};
   Seconds settling{900.0};     ///< from arriving near a temperature to the start of the dwell

@@ -66,8 +66,9 @@ struct PlannedStep {
   std::variant<SetTemperature, SettleTemperature, Wait, Average, CompensateField, SweepLevel,
                Rotate, Prompt>
       action;
-  std::string path;  ///< "3.2": place in the procedure
-  std::string says;  ///< a sentence with units, for plan and progress
+  std::string path;   ///< "3.2": place in the procedure; in a loop the middle number is the turn
+  std::string where;  ///< "coil-sweep.json: /steps/2", for messages
+  std::string says;   ///< a sentence with units, for plan and progress
   int test = 1;
   /// Steps of one indivisible block share its number; 0 is none. After an interruption a block
   /// restarts from its first step.
@@ -87,5 +88,9 @@ struct Plan {
 /// and the step's JSON pointer. `overrides` replace the procedure's parameter defaults.
 Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
                        const std::map<std::string, config::ParameterValue>& overrides = {});
+
+/// The second half of it: sentences, estimates and limits of steps that are expanded already.
+Result<Plan> make_plan(const std::string& name, std::vector<PlannedStep> steps,
+                       const config::BenchConfig& bench);
 
 }  // namespace fogbench::procedures

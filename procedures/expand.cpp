@@ -1,0 +1,298 @@
+#include "procedures/expand.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace fogbench::procedures {
+namespace {
+
+using config::Number;
+using config::NumberList;
+using config::ParameterValue;
+using config::ProcedureConfig;
+
+Error bad(std::string message) {
+  return Error{ErrorCode::kBadInput, std::move(message)};
+}
+
+std::string location(const ProcedureConfig& procedure, const std::string& pointer) {
+  const std::string file =
+      procedure.file.empty() ? procedure.name : procedure.file.filename().string();
+  return file + ": " + pointer;
+}
+
+std::string names_of(const Parameters& parameters) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : parameters) names.push_back(name);
+  return names.empty() ? "it has none" : fmt::format("known: {}", fmt::join(names, ", "));
+}
+
+/// The procedure's defaults with `given` in their place. A single number stands for a list of one.
+Result<Parameters> bind_parameters(const ProcedureConfig& procedure, const Parameters& given,
+                                   const std::string& where) {
+  Parameters bound = procedure.parameters;
+  for (const auto& [name, value] : given) {
+    const auto found = bound.find(name);
+    if (found == bound.end()) {
+      return bad(fmt::format("{}: procedure {} has no parameter \"{}\" ({})", where, procedure.name,
+                             name, names_of(procedure.parameters)));
+    }
+    const bool wants_list = std::holds_alternative<std::vector<double>>(found->second);
+    const bool is_list = std::holds_alternative<std::vector<double>>(value);
+    if (is_list && !wants_list) {
+      return bad(fmt::format("{}: parameter \"{}\" of {} is a list, expected one number", where,
+                             name, procedure.name));
+    }
+    if (wants_list && !is_list) {
+      found->second = std::vector<double>{std::get<double>(value)};
+    } else {
+      found->second = value;
+    }
+  }
+  return bound;
+}
+
+struct Place {
+  const ProcedureConfig* procedure;
+  Parameters parameters;
+  std::vector<std::string> chain;  ///< procedures being called, outermost first
+  int test = 1;
+  int block = 0;
+};
+
+class Expander {
+ public:
+  explicit Expander(const ProcedureLoader& loader) : loader_(loader) {}
+
+  Status expand_all(const std::vector<config::Step>& steps, const Place& place,
+                    const std::string& prefix) {
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const std::string path = prefix + std::to_string(i + 1);
+      const auto one = expand_one(steps[i], place, path);
+      if (!one) return one;
+    }
+    return {};
+  }
+
+  std::vector<PlannedStep> take() { return std::move(steps_); }
+
+ private:
+  Status expand_one(const config::Step& step, const Place& place, const std::string& path) {
+    where_ = location(*place.procedure, step.pointer);
+    place_ = &place;
+    failure_.reset();
+    const auto status =
+        std::visit([&](const auto& action) { return add(action, path); }, step.action);
+    if (failure_) return *failure_;
+    return status;
+  }
+
+  // A wrong number is remembered and reported once the step is built, so that each step below reads
+  // as what it is.
+  double number(const Number& number, const char* what) {
+    const auto value = resolve(number);
+    if (!value) return fail(value.error());
+    if (!std::isfinite(*value)) return fail(bad(fmt::format("{}: {} is not finite", where_, what)));
+    return *value;
+  }
+  double positive(const Number& n, const char* what) {
+    const double value = number(n, what);
+    if (!failure_ && value <= 0) {
+      return fail(bad(fmt::format("{}: {} is {}, expected more than 0", where_, what, value)));
+    }
+    return value;
+  }
+  double not_negative(const Number& n, const char* what) {
+    const double value = number(n, what);
+    if (!failure_ && value < 0) {
+      return fail(bad(fmt::format("{}: {} is {}, expected 0 or more", where_, what, value)));
+    }
+    return value;
+  }
+  double fail(Error error) {
+    if (!failure_) failure_ = std::move(error);
+    return 1.0;
+  }
+
+  Result<ParameterValue> look_up(const std::string& reference) const {
+    const std::string name = reference.starts_with('$') ? reference.substr(1) : reference;
+    const auto found = place_->parameters.find(name);
+    if (found == place_->parameters.end()) {
+      return bad(
+          fmt::format("{}: no parameter \"{}\" ({})", where_, name, names_of(place_->parameters)));
+    }
+    return found->second;
+  }
+  Result<double> resolve(const Number& number) const {
+    if (const double* value = std::get_if<double>(&number)) return *value;
+    const auto& reference = std::get<std::string>(number);
+    const auto value = look_up(reference);
+    if (!value) return value.error();
+    if (const double* one = std::get_if<double>(&*value)) return *one;
+    return bad(fmt::format("{}: {} is a list, expected one number", where_, reference));
+  }
+  Result<std::vector<double>> resolve(const NumberList& list) const {
+    if (const auto* values = std::get_if<std::vector<double>>(&list)) return *values;
+    const auto& reference = std::get<std::string>(list);
+    const auto value = look_up(reference);
+    if (!value) return value.error();
+    if (const auto* values = std::get_if<std::vector<double>>(&*value)) return *values;
+    return bad(fmt::format("{}: {} is one number, expected a list", where_, reference));
+  }
+
+  template <class Action>
+  Status append(Action action, const std::string& path, int block) {
+    if (steps_.size() >= kMaximumSteps) {
+      return bad(
+          fmt::format("{}: the procedure expands to more than {} steps", where_, kMaximumSteps));
+    }
+    PlannedStep step;
+    step.action = std::move(action);
+    step.path = path;
+    step.where = where_;
+    step.test = place_->test;
+    step.block = block;
+    steps_.push_back(std::move(step));
+    return {};
+  }
+  template <class Action>
+  Status append(Action action, const std::string& path) {
+    return append(std::move(action), path, place_->block);
+  }
+
+  Status add(const config::SetTemperature& s, const std::string& path) {
+    const bool heated = s.mode != HeatingMode::kOff;
+    return append(SetTemperature{Celsius{heated ? number(s.target_c, "target_c") : 0.0}, s.mode},
+                  path);
+  }
+  Status add(const config::SettleTemperature& s, const std::string& path) {
+    SettleTemperature settle{Celsius{positive(s.band_c, "band_c")},
+                             Seconds{not_negative(s.dwell_s, "dwell_s")},
+                             positive(s.slope_c_per_h, "slope_c_per_h"),
+                             Seconds{positive(s.timeout_s, "timeout_s")},
+                             s.segment,
+                             Seconds{positive(s.window_s, "window_s")}};
+    if (!failure_ && settle.timeout <= settle.dwell) {
+      return bad(fmt::format("{}: timeout_s is {}, expected more than dwell_s ({})", where_,
+                             settle.timeout.count(), settle.dwell.count()));
+    }
+    return append(std::move(settle), path);
+  }
+  Status add(const config::Wait& s, const std::string& path) {
+    return append(Wait{Seconds{not_negative(s.duration_s, "duration_s")},
+                       Seconds{not_negative(s.operating_time_s, "operating_time_s")}, s.segment,
+                       Seconds{positive(s.window_s, "window_s")}},
+                  path);
+  }
+  Status add(const config::Average& s, const std::string& path) {
+    return append(Average{Seconds{positive(s.duration_s, "duration_s")}, s.segment, false}, path);
+  }
+  Status add(const config::Baseline& s, const std::string& path) {
+    return append(Average{Seconds{positive(s.duration_s, "duration_s")}, s.segment, true}, path);
+  }
+  Status add(const config::CompensateField& s, const std::string& path) {
+    return append(CompensateField{Microtesla{positive(s.tolerance_ut, "tolerance_ut")}}, path);
+  }
+  Status add(const config::Sweep& s, const std::string& path) {
+    const auto levels = resolve(s.levels_ut);
+    if (!levels) return levels.error();
+    if (levels->empty()) {
+      return bad(fmt::format("{}: levels_ut is empty, expected one level or more", where_));
+    }
+    if (s.segment.find('/') != std::string::npos) {
+      return bad(fmt::format("{}: segment is \"{}\", expected no '/': the branch is appended",
+                             where_, s.segment));
+    }
+    const Seconds duration{positive(s.duration_s, "duration_s")};
+    const Seconds settle{not_negative(s.settle_s, "settle_s")};
+    const auto branches = branch_names(*levels);
+    const int block = place_->block != 0 ? place_->block : ++blocks_;
+    for (std::size_t i = 0; i < levels->size(); ++i) {
+      const double level = number((*levels)[i], "a level of levels_ut");
+      const auto appended =
+          append(SweepLevel{s.axis, Microtesla{level}, duration, settle,
+                            s.segment.empty() ? branches[i] : s.segment + "/" + branches[i]},
+                 path + "." + std::to_string(i + 1), block);
+      if (!appended) return appended;
+    }
+    return {};
+  }
+  Status add(const config::Rotate& s, const std::string& path) {
+    return append(Rotate{Degree{number(s.azimuth_deg, "azimuth_deg")}}, path);
+  }
+  Status add(const config::Prompt& s, const std::string& path) {
+    return append(Prompt{s.text}, path);
+  }
+
+  Status add(const config::ForEach& s, const std::string& path) {
+    const auto values = resolve(s.in);
+    if (!values) return values.error();
+    Place inner = *place_;
+    for (std::size_t turn = 0; turn < values->size(); ++turn) {
+      inner.parameters[s.variable] = (*values)[turn];
+      const auto done = expand_all(s.steps, inner, path + "." + std::to_string(turn + 1) + ".");
+      if (!done) return done;
+    }
+    return {};
+  }
+  Status add(const config::Indivisible& s, const std::string& path) {
+    Place inner = *place_;
+    if (inner.block == 0) inner.block = ++blocks_;
+    return expand_all(s.steps, inner, path + ".");
+  }
+  Status add(const config::Call& s, const std::string& path) {
+    const std::string where = where_;
+    const auto called = loader_(s.procedure, *place_->procedure);
+    if (!called) return bad(fmt::format("{}: {}", where, called.error().message));
+    Place inner = *place_;
+    inner.chain.push_back(called->name);
+    for (const std::string& outer : place_->chain) {
+      if (outer == called->name) {
+        return bad(fmt::format("{}: {} calls itself: {}", where, called->name,
+                               fmt::join(inner.chain, " -> ")));
+      }
+    }
+    Parameters given;
+    for (const auto& [name, value] : s.parameters) {
+      if (const double* one = std::get_if<double>(&value)) {
+        given[name] = *one;
+      } else {
+        auto looked_up = look_up(std::get<std::string>(value));
+        if (!looked_up) return looked_up.error();
+        given[name] = std::move(*looked_up);
+      }
+    }
+    auto bound = bind_parameters(*called, given, where);
+    if (!bound) return bound.error();
+    inner.procedure = &*called;
+    inner.parameters = std::move(*bound);
+    if (s.test != 0) inner.test = s.test;
+    return expand_all(called->steps, inner, path + ".");
+  }
+
+  const ProcedureLoader& loader_;
+  std::vector<PlannedStep> steps_;
+  int blocks_ = 0;
+  // Of the step being expanded.
+  std::string where_;
+  const Place* place_ = nullptr;
+  std::optional<Error> failure_;
+};
+
+}  // namespace
+
+Result<std::vector<PlannedStep>> expand(const ProcedureConfig& procedure,
+                                        const Parameters& overrides,
+                                        const ProcedureLoader& loader) {
+  auto parameters = bind_parameters(procedure, overrides, location(procedure, "/parameters"));
+  if (!parameters) return parameters.error();
+  Expander expander(loader);
+  const Place place{&procedure, std::move(*parameters), {procedure.name}};
+  const auto done = expander.expand_all(procedure.steps, place, "");
+  if (!done) return done.error();
+  return expander.take();
+}
+
+}  // namespace fogbench::procedures

@@ -1,0 +1,145 @@
+#include "procedures/plan.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "procedures/check_limits.hpp"
+#include "procedures/estimate.hpp"
+#include "procedures/expand.hpp"
+#include "tests/procedures/procedure_builder.hpp"
+
+namespace fogbench::procedures {
+namespace {
+
+using test::procedure;
+using test::step;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+Result<Plan> plan_of(std::vector<config::Step> steps, const config::BenchConfig& bench = {}) {
+  const auto expanded =
+      expand(procedure("p", std::move(steps)), {},
+             [](const std::string& name, const config::ProcedureConfig&) {
+               return Result<config::ProcedureConfig>(Error{ErrorCode::kBadInput, name});
+             });
+  EXPECT_TRUE(expanded);
+  return make_plan("p", *expanded, bench);
+}
+
+std::string refusal(std::vector<config::Step> steps, ErrorCode code,
+                    const config::BenchConfig& bench = {}) {
+  const auto plan = plan_of(std::move(steps), bench);
+  if (plan) return "accepted";
+  EXPECT_EQ(plan.error().code, code);
+  return plan.error().message;
+}
+
+config::Step sweep(Axis axis, std::vector<double> levels) {
+  return step(config::Sweep{axis, std::move(levels), 180.0, 5.0, "coil"});
+}
+config::Step heat(double target_c) {
+  return step(config::SetTemperature{target_c, HeatingMode::kNormal});
+}
+
+TEST(Plan, SaysEachStepInASentenceWithUnits) {
+  const auto plan = plan_of({step(config::CompensateField{0.2}), sweep(Axis::kX, {0.0, 50.0}),
+                             heat(31.0), step(config::Baseline{60.0, "t/baseline"})});
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_EQ(plan->steps[2].says,
+            "set 50 uT along OX, settle for 5 s, average for 3 min as coil/up");
+  EXPECT_EQ(plan->steps[3].says, "hold 31 degC in normal mode");
+  EXPECT_EQ(plan->steps[4].says, "measure the baseline for 1 min as t/baseline");
+}
+
+TEST(Plan, RefusesATemperatureOutsideTheBenchOrItsThermostat) {
+  EXPECT_THAT(refusal({heat(61.0)}, ErrorCode::kLimit),
+              AllOf(HasSubstr("p.json: /steps/0"), HasSubstr("61 degC"), HasSubstr("15 to 60")));
+  EXPECT_THAT(refusal({heat(14.0)}, ErrorCode::kLimit), HasSubstr("14 degC"));
+  config::BenchConfig bench;
+  bench.thermostat.device.target_minimum = Celsius{20.0};
+  bench.thermostat.device.target_maximum = Celsius{50.0};
+  EXPECT_THAT(refusal({heat(55.0)}, ErrorCode::kLimit, bench), HasSubstr("20 to 50"));
+}
+
+TEST(Plan, RefusesAFieldOrACurrentOutsideTheBench) {
+  const auto zeroed = step(config::CompensateField{0.2});
+  EXPECT_THAT(refusal({zeroed, sweep(Axis::kX, {0.0, -330.0})}, ErrorCode::kLimit),
+              AllOf(HasSubstr("p.json: /steps/1"), HasSubstr("-330 uT"), HasSubstr("320 uT")));
+  config::BenchConfig weak;
+  weak.coil_vertical.current_limit = config::Ampere{3.5};
+  EXPECT_THAT(refusal({zeroed, sweep(Axis::kY, {0.0, 300.0})}, ErrorCode::kLimit, weak),
+              AllOf(HasSubstr("3.95 A"), HasSubstr("3.50 A")));
+  config::BenchConfig weak_supply;
+  weak_supply.coil_horizontal.device.minimum = -3.0;
+  weak_supply.coil_horizontal.device.maximum = 3.0;
+  EXPECT_THAT(refusal({zeroed, sweep(Axis::kX, {0.0, 300.0})}, ErrorCode::kLimit, weak_supply),
+              HasSubstr("3.00 A"));
+}
+
+TEST(Plan, RefusesARunLongerThanTheBenchAllows) {
+  EXPECT_THAT(refusal({step(config::Wait{172801.0, 0.0, "", 60.0})}, ErrorCode::kLimit),
+              AllOf(HasSubstr("48 h 1 s"), HasSubstr("48 h")));
+}
+
+TEST(Plan, RefusesASweepWithoutAZeroOrAwayFromItsCoil) {
+  const auto zeroed = step(config::CompensateField{0.2});
+  const auto turned = step(config::Rotate{90.0});
+  EXPECT_THAT(refusal({sweep(Axis::kX, {0.0})}, ErrorCode::kBadInput),
+              HasSubstr("without compensate_field"));
+  EXPECT_THAT(refusal({zeroed, turned, sweep(Axis::kZ, {0.0})}, ErrorCode::kBadInput),
+              HasSubstr("without compensate_field"));
+  EXPECT_THAT(refusal({zeroed, sweep(Axis::kZ, {0.0})}, ErrorCode::kBadInput),
+              AllOf(HasSubstr("OZ at azimuth 0 deg"), HasSubstr("rotate to 90")));
+  EXPECT_TRUE(plan_of({turned, zeroed, sweep(Axis::kZ, {0.0})}));
+}
+
+TEST(Plan, SaysWhichLimitsAreMetAndByHowMuch) {
+  const auto plan = plan_of({heat(31.0), heat(55.0), step(config::CompensateField{0.2}),
+                             sweep(Axis::kX, {0.0, 300.0, -300.0})});
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_THAT(plan->limits_met, Contains(HasSubstr("31 to 55 degC, allowed 15 to 60")));
+  EXPECT_THAT(plan->limits_met, Contains(HasSubstr("-300 to 300 uT, allowed up to 320")));
+  EXPECT_THAT(plan->limits_met, Contains(HasSubstr("at most 3.95 A")));
+  EXPECT_THAT(plan->limits_met, Contains(HasSubstr("allowed 48 h")));
+}
+
+TEST(Plan, EstimatesWhatTheStepsTake) {
+  config::BenchConfig bench;
+  bench.estimates.room = Celsius{21.0};
+  bench.estimates.heating = config::CelsiusPerHour{30.0};
+  bench.estimates.settling = Seconds{900.0};
+  bench.turntable.motorised = true;
+  bench.turntable.move_time = Seconds{20.0};
+  bench.coil_horizontal.device.settle = Seconds{0.5};
+  const auto plan = plan_of(
+      {heat(31.0), step(config::SettleTemperature{1.0, 300.0, 1.0, 7200.0, "", 60.0}),
+       step(config::Wait{0.0, 3000.0, "", 60.0}), step(config::Average{60.0, ""}),
+       step(config::CompensateField{0.2}), sweep(Axis::kX, {0.0}), step(config::Rotate{90.0})},
+      bench);
+  ASSERT_TRUE(plan) << plan.error().message;
+  const auto estimate = [&](std::size_t i) { return plan->steps[i].estimate.count(); };
+  EXPECT_DOUBLE_EQ(estimate(1), 9.0 / 30.0 * 3600.0 + 900.0 + 300.0);
+  EXPECT_DOUBLE_EQ(estimate(2), 3000.0 - estimate(1));
+  EXPECT_DOUBLE_EQ(estimate(3), 60.0);
+  EXPECT_DOUBLE_EQ(estimate(4), 15.0);
+  EXPECT_DOUBLE_EQ(estimate(5), 185.5);
+  EXPECT_DOUBLE_EQ(estimate(6), 20.0);
+  EXPECT_DOUBLE_EQ(plan->estimate.count(), 3000.0 + 60.0 + 15.0 + 185.5 + 20.0);
+}
+
+TEST(Plan, ASettleIsEstimatedAtNoMoreThanItsTimeout) {
+  const auto plan =
+      plan_of({heat(55.0), step(config::SettleTemperature{1.0, 300.0, 1.0, 600.0, "", 60.0})});
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_DOUBLE_EQ(plan->estimate.count(), 600.0);
+}
+
+TEST(DurationText, HasNoMoreUnitsThanNeeded) {
+  EXPECT_EQ(duration_text(Seconds{0.5}), "0.5 s");
+  EXPECT_EQ(duration_text(Seconds{60.0}), "1 min");
+  EXPECT_EQ(duration_text(Seconds{3665.0}), "1 h 1 min 5 s");
+}
+
+}  // namespace
+}  // namespace fogbench::procedures
