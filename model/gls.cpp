@@ -1,0 +1,302 @@
+#include "model/gls.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "model/window_geometry.hpp"
+
+namespace fogbench::model {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kLeastWeight = 1e-4;
+// Below this nothing could be told about the shape of noise whose size is unknown as well.
+constexpr double kFewestFreeRows = 10.0;
+constexpr double kRankThreshold = 1e-10;
+// deg/sqrt(h): far below any gyro and above the rounding of its numbers; keeps a perfect fit
+// finite.
+constexpr double kLeastWhite = 1e-12;
+// Twice the log-likelihood that a coefficient must win to be called distinguishable from zero
+// (5 % one-sided, chi-squared with one degree of freedom and the zero on the boundary).
+constexpr double kDistinguishable = 2.71;
+constexpr double kTwoSigma = 0.9544997361036416;  // probability within two standard deviations
+
+/// log of the regularised lower incomplete gamma function; the value itself may underflow.
+double log_gamma_p(double a, double x) {
+  if (x > a) return std::log(boost::math::gamma_p(a, x));
+  double term = 1.0, sum = 1.0;
+  for (int n = 1; n < 10000 && term > 1e-17 * sum; ++n) {
+    term *= x / (a + n);
+    sum += term;
+  }
+  return a * std::log(x) - x - std::lgamma(a + 1.0) + std::log(sum);
+}
+
+/// Columns of X that are linearly independent of those kept before them, by pivoted QR.
+std::vector<Index> independent_columns(const MatrixXd& x) {
+  VectorXd norms = x.colwise().norm();
+  for (double& norm : norms) norm = norm > 0.0 ? norm : 1.0;
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(x * norms.cwiseInverse().asDiagonal());
+  qr.setThreshold(kRankThreshold);
+  std::vector<Index> kept;
+  for (Index i = 0; i < qr.rank(); ++i) kept.push_back(qr.colsPermutation().indices()[i]);
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
+/// One shape's part of the answer.
+struct Solution {
+  MatrixXd r;  // triangle of the whitened [X y]
+  double residual_squares = 0.0;
+  double log_weight = 0.0;  // marginal over N
+};
+
+class Problem {
+ public:
+  Problem(const NoiseShapes& shapes, const MatrixXd& x, const VectorXd& y)
+      : shapes_(shapes), kept_(independent_columns(x)) {
+    joined_.resize(x.rows(), static_cast<Index>(kept_.size()) + 1);
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      joined_.col(static_cast<Index>(i)) = x.col(kept_[i]);
+    }
+    joined_.rightCols(1) = y;
+    nu_ = static_cast<double>(x.rows() - rank());
+    anchor_ = std::max(shapes.anchor(), 0.0);
+  }
+
+  Index rank() const { return static_cast<Index>(kept_.size()); }
+  double nu() const { return nu_; }
+  const std::vector<Index>& kept() const { return kept_; }
+
+  Solution solve(const Whitener& whitener) const {
+    const MatrixXd whitened = whitener.whiten(joined_);
+    Solution s;
+    s.r = Eigen::HouseholderQR<MatrixXd>(whitened).matrixQR().topRows(rank() + 1);
+    const double left = s.r(rank(), rank());
+    const double rounding = 1e-15 * whitened.rightCols(1).norm();
+    s.residual_squares = left * left + rounding * rounding + nu_ * kLeastWhite * kLeastWhite;
+    s.log_weight = -0.5 * whitener.log_determinant() - log_determinant_of_x(s) -
+                   0.5 * nu_ * std::log(s.residual_squares);
+    if (anchor_ > 0.0) s.log_weight += log_gamma_p(0.5 * nu_, anchored_half_chi2(s));
+    return s;
+  }
+
+  /// Posterior mean of N^2 given the shape.
+  double mean_white_squared(const Solution& s) const {
+    if (nu_ <= 3.0) return best_white_squared(s);
+    const double free = s.residual_squares / (nu_ - 2.0);
+    if (anchor_ == 0.0) return free;
+    const double x = anchored_half_chi2(s);
+    return free * std::exp(log_gamma_p(0.5 * nu_ - 1.0, x) - log_gamma_p(0.5 * nu_, x));
+  }
+
+  double best_white_squared(const Solution& s) const {
+    return std::max(anchor_ * anchor_, s.residual_squares / nu_);
+  }
+
+  double log_likelihood(const Solution& s, const Whitener& whitener) const {
+    const double n2 = best_white_squared(s);
+    return -0.5 * (nu_ * std::log(2.0 * std::numbers::pi * n2) + whitener.log_determinant() +
+                   s.residual_squares / n2) -
+           log_determinant_of_x(s);
+  }
+
+  VectorXd beta(const Solution& s) const {
+    return s.r.topLeftCorner(rank(), rank())
+        .triangularView<Eigen::Upper>()
+        .solve(s.r.col(rank()).head(rank()));
+  }
+
+  MatrixXd unscaled_covariance(const Solution& s) const {
+    const MatrixXd inverse = s.r.topLeftCorner(rank(), rank())
+                                 .triangularView<Eigen::Upper>()
+                                 .solve(MatrixXd::Identity(rank(), rank()));
+    return inverse * inverse.transpose();
+  }
+
+ private:
+  double anchored_half_chi2(const Solution& s) const {
+    return 0.5 * s.residual_squares / (anchor_ * anchor_);
+  }
+  double log_determinant_of_x(const Solution& s) const {
+    return s.r.diagonal().head(rank()).array().abs().log().sum();
+  }
+
+  const NoiseShapes& shapes_;
+  std::vector<Index> kept_;
+  MatrixXd joined_;
+  double nu_ = 0.0;
+  double anchor_ = 0.0;
+};
+
+/// Climbs from the best shape of the grid with a shrinking cross of trial points in the logarithms
+/// of B/N and K/N. A coefficient that is zero there stays zero.
+NoiseCoefficients refine(const NoiseShapes& shapes, const Problem& problem, NoiseCoefficients best,
+                         double best_weight) {
+  double step_b = std::log(shapes.step_of_b()) / 2.0;
+  double step_k = std::log(shapes.step_of_k()) / 2.0;
+  constexpr int kHalvings = 4;
+  for (int level = 0; level < kHalvings; ++level, step_b /= 2.0, step_k /= 2.0) {
+    const NoiseCoefficients centre = best;
+    for (const auto& [b, k] :
+         {std::pair{step_b, 0.0}, {-step_b, 0.0}, {0.0, step_k}, {0.0, -step_k}}) {
+      NoiseCoefficients trial = centre;
+      trial.bias_instability_deg_per_h *= std::exp(b);
+      trial.rate_random_walk_deg_per_h_per_sqrt_h *= std::exp(k);
+      const bool same = b != 0.0 ? trial.bias_instability_deg_per_h == 0.0
+                                 : trial.rate_random_walk_deg_per_h_per_sqrt_h == 0.0;
+      if (same) continue;
+      const double weight = problem.solve(*shapes.whitener(trial)).log_weight;
+      if (weight > best_weight) {
+        best = trial;
+        best_weight = weight;
+      }
+    }
+  }
+  return best;
+}
+
+NoiseCoefficients scaled(NoiseCoefficients shape, double white) {
+  shape.angle_random_walk_deg_per_sqrt_h *= white;
+  shape.bias_instability_deg_per_h *= white;
+  shape.rate_random_walk_deg_per_h_per_sqrt_h *= white;
+  return shape;
+}
+
+std::string describe(const NoiseEstimate& estimate, bool too_few, double nu, double without_b,
+                     double without_k) {
+  const NoiseCoefficients& noise = estimate.noise;
+  std::string text =
+      fmt::format("white N = {:.3g} deg/sqrt(h) ({})", noise.angle_random_walk_deg_per_sqrt_h,
+                  estimate.anchored ? "bounded below by the stated standard errors"
+                                    : "from the residual alone");
+  if (too_few) {
+    return text + fmt::format(
+                      "; flicker and rate random walk cannot be told from {:.0f} degrees "
+                      "of freedom, the noise is taken as white",
+                      nu);
+  }
+  const auto add = [&](const char* name, double value, const char* unit, double gain) {
+    text += gain > kDistinguishable ? fmt::format(", {} = {:.3g} {}", name, value, unit)
+                                    : fmt::format(", {} not distinguishable from zero", name);
+  };
+  add("bias instability B", noise.bias_instability_deg_per_h, "deg/h", without_b);
+  add("rate random walk K", noise.rate_random_walk_deg_per_h_per_sqrt_h, "deg/h/sqrt(h)",
+      without_k);
+  return text;
+}
+
+}  // namespace
+
+Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const VectorXd& y) {
+  if (x.rows() != shapes.rows() || y.size() != shapes.rows()) {
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("{} windows, {} rows of regressors and {} measurements: as many of "
+                             "each were expected",
+                             shapes.rows(), x.rows(), y.size())};
+  }
+  if (x.rows() <= x.cols()) {
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("{} rows for {} terms: more rows than terms were expected", x.rows(),
+                             x.cols())};
+  }
+  if (!x.allFinite() || !y.allFinite()) {
+    return Error{ErrorCode::kBadInput, "a regressor or a measurement is not a number"};
+  }
+  const Problem problem(shapes, x, y);
+  GlsResult result;
+  result.degrees_of_freedom = problem.nu();
+  result.noise.anchored = shapes.anchor() > 0.0;
+  const bool too_few = !result.noise.anchored && problem.nu() < kFewestFreeRows;
+
+  std::vector<Solution> solutions;
+  std::size_t best = 0;
+  double best_without_b = -std::numeric_limits<double>::infinity();
+  double best_without_k = best_without_b;
+  for (std::size_t i = 0; i < (too_few ? 1 : shapes.size()); ++i) {
+    solutions.push_back(problem.solve(*shapes.whitener(i)));
+    const double weight = solutions[i].log_weight;
+    if (weight > solutions[best].log_weight) best = i;
+    const NoiseCoefficients& shape = shapes.shape(i);
+    if (shape.bias_instability_deg_per_h == 0.0) best_without_b = std::max(best_without_b, weight);
+    if (shape.rate_random_walk_deg_per_h_per_sqrt_h == 0.0) {
+      best_without_k = std::max(best_without_k, weight);
+    }
+  }
+
+  const double top = solutions[best].log_weight;
+  double total = 0.0;
+  for (const Solution& s : solutions) {
+    const double weight = std::exp(s.log_weight - top);
+    if (weight > kLeastWeight) total += weight;
+  }
+  const Index rank = problem.rank();
+  VectorXd mean = VectorXd::Zero(rank);
+  MatrixXd second = MatrixXd::Zero(rank, rank);
+  for (std::size_t i = 0; i < solutions.size(); ++i) {
+    const double raw = std::exp(solutions[i].log_weight - top);
+    if (raw <= kLeastWeight) continue;
+    const double weight = raw / total;
+    const double white2 = too_few ? problem.best_white_squared(solutions[i])
+                                  : problem.mean_white_squared(solutions[i]);
+    const VectorXd beta = problem.beta(solutions[i]);
+    mean += weight * beta;
+    second += weight * white2 * problem.unscaled_covariance(solutions[i]);
+    result.noise.plausible.emplace_back(scaled(shapes.shape(i), std::sqrt(white2)), weight);
+  }
+  for (std::size_t i = 0; i < solutions.size(); ++i) {
+    const double raw = std::exp(solutions[i].log_weight - top);
+    if (raw <= kLeastWeight) continue;
+    const VectorXd off = problem.beta(solutions[i]) - mean;
+    second += raw / total * off * off.transpose();
+  }
+
+  result.beta = VectorXd::Zero(x.cols());
+  result.covariance =
+      MatrixXd::Constant(x.cols(), x.cols(), std::numeric_limits<double>::quiet_NaN());
+  result.beta(problem.kept()) = mean;
+  result.covariance(problem.kept(), problem.kept()) = second;
+  result.residual = y - x * result.beta;
+
+  const NoiseCoefficients shape =
+      too_few ? shapes.shape(0) : refine(shapes, problem, shapes.shape(best), top);
+  const auto unit = shapes.whitener(shape);
+  const Solution at_best = problem.solve(*unit);
+  const double white = std::sqrt(problem.best_white_squared(at_best));
+  result.noise.noise = scaled(shape, white);
+  result.noise.log_likelihood = problem.log_likelihood(at_best, *unit);
+  result.noise.says =
+      describe(result.noise, too_few, problem.nu(), 2.0 * (at_best.log_weight - best_without_b),
+               2.0 * (at_best.log_weight - best_without_k));
+  result.whitened = unit->whiten(result.residual) / white;
+  result.standard_deviation = unit->standard_deviation() * white;
+  if (too_few) {
+    const boost::math::students_t student(problem.nu());
+    result.coverage_factor = boost::math::quantile(student, 0.5 + 0.5 * kTwoSigma);
+  }
+  return result;
+}
+
+Result<GlsResult> gls(const Windows& windows, const MatrixXd& x, const VectorXd& y) {
+  auto shapes = NoiseShapes::make(windows);
+  if (!shapes) return shapes.error();
+  return gls(*shapes, x, y);
+}
+
+Result<NoiseEstimate> estimate_noise(const Windows& windows, const MatrixXd& x, const VectorXd& y) {
+  auto result = gls(windows, x, y);
+  if (!result) return result.error();
+  return std::move(result->noise);
+}
+
+}  // namespace fogbench::model

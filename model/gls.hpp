@@ -1,0 +1,74 @@
+#pragma once
+// Generalised least squares under noise that is itself estimated from the residual.
+//
+//   restricted likelihood of a shape s = (B/N, K/N), Omega = N^2 R_s, nu = rows - rank X:
+//   log l = -(log|R| + log|X'R^-1 X| + nu log N^2 + RSS/N^2)/2,  RSS = min |L^-1 (y - X b)|^2
+//
+// N is integrated out with a prior flat in log N above the anchor: the median of
+// standard error^2 x duration where the windows state one, else zero. The stated error holds white
+// noise only, so the real N may lie above it, never below. The shapes form a grid, flat in their
+// logarithms plus the corners where B or K is zero; beta and its covariance are averaged over the
+// grid with the posterior weights, so that not knowing the noise widens the intervals.
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "model/noise.hpp"
+
+namespace fogbench::model {
+
+struct WindowGeometry;
+
+/// The grid of noise shapes on given windows, in units of N. Whiteners are made once and kept where
+/// the rows are few, so that hundreds of candidate models on one table cost little each.
+class NoiseShapes {
+ public:
+  /// Errors as check_windows.
+  static Result<NoiseShapes> make(const Windows& windows);
+
+  std::size_t size() const { return shapes_.size(); }
+  Eigen::Index rows() const { return rows_; }
+  /// With N = 1 deg/sqrt(h). Shape 0 is white.
+  const NoiseCoefficients& shape(std::size_t i) const { return shapes_[i]; }
+  std::shared_ptr<const Whitener> whitener(std::size_t i) const;
+  /// Whitener of any noise on the same windows.
+  std::unique_ptr<Whitener> whitener(const NoiseCoefficients& noise) const;
+  /// Lower bound of N from the stated standard errors; 0 where there are none.
+  double anchor() const { return anchor_; }
+  /// Ratio of neighbouring non-zero B and K values of the grid.
+  double step_of_b() const { return step_of_b_; }
+  double step_of_k() const { return step_of_k_; }
+
+ private:
+  std::shared_ptr<const WindowGeometry> geometry_;
+  std::vector<NoiseCoefficients> shapes_;
+  std::vector<std::shared_ptr<const Whitener>> kept_;
+  Eigen::Index rows_ = 0;
+  double anchor_ = 0.0;
+  double step_of_b_ = 1.0;
+  double step_of_k_ = 1.0;
+};
+
+struct GlsResult {
+  Eigen::VectorXd beta;
+  /// Averaged over the plausible noise models, their disagreement about beta included. NaN in the
+  /// rows and columns of dependent columns of X, whose beta is 0.
+  Eigen::MatrixXd covariance;
+  /// beta +- factor x standard error holds 95.45 %: 2 unless the noise is white with few degrees
+  /// of freedom (then Student's t).
+  double coverage_factor = 2.0;
+  double degrees_of_freedom = 0.0;
+  NoiseEstimate noise;
+  Eigen::VectorXd residual;            ///< y - X beta
+  Eigen::VectorXd whitened;            ///< of the residual, under noise.noise
+  Eigen::VectorXd standard_deviation;  ///< of each row, under noise.noise
+};
+
+/// Errors: kBadInput: as check_windows, sizes that do not fit, or not more rows than columns.
+Result<GlsResult> gls(const Windows& windows, const Eigen::MatrixXd& x, const Eigen::VectorXd& y);
+/// The same on shapes that were prepared once.
+Result<GlsResult> gls(const NoiseShapes& shapes, const Eigen::MatrixXd& x,
+                      const Eigen::VectorXd& y);
+
+}  // namespace fogbench::model
