@@ -51,23 +51,7 @@ std::string_view name_of(NumberType type) {
 }
 
 Result<double> number_from_bits(NumberType type, std::uint32_t bits) {
-  switch (type) {
-    case NumberType::kUint8:
-      return static_cast<double>(static_cast<std::uint8_t>(bits));
-    case NumberType::kInt8:
-      return static_cast<double>(static_cast<std::int8_t>(bits));
-    case NumberType::kUint16:
-      return static_cast<double>(static_cast<std::uint16_t>(bits));
-    case NumberType::kInt16:
-      return static_cast<double>(static_cast<std::int16_t>(bits));
-    case NumberType::kUint32:
-      return static_cast<double>(bits);
-    case NumberType::kInt32:
-      return static_cast<double>(static_cast<std::int32_t>(bits));
-    case NumberType::kFloat32:
-      break;
-  }
-  const auto number = static_cast<double>(std::bit_cast<float>(bits));
+  const double number = raw_from_bits(type, bits);
   if (!std::isfinite(number)) {
     return Error{ErrorCode::kProtocol, fmt::format("reads {}, expected a finite number", number)};
   }

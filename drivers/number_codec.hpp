@@ -30,7 +30,27 @@ std::size_t byte_count(NumberType type);
 std::size_t word_count(NumberType type);
 std::string_view name_of(NumberType type);  ///< "int16", "float32", as the device files say it
 
-/// The number that the low bits hold. kProtocol for a NaN or an infinity.
+/// The number that the low bits hold; a float may be a NaN or an infinity.
+inline double raw_from_bits(NumberType type, std::uint32_t bits) {
+  switch (type) {
+    case NumberType::kUint8:
+      return static_cast<std::uint8_t>(bits);
+    case NumberType::kInt8:
+      return static_cast<std::int8_t>(bits);
+    case NumberType::kUint16:
+      return static_cast<std::uint16_t>(bits);
+    case NumberType::kInt16:
+      return static_cast<std::int16_t>(bits);
+    case NumberType::kUint32:
+      return bits;
+    case NumberType::kInt32:
+      return static_cast<std::int32_t>(bits);
+    case NumberType::kFloat32:
+      break;
+  }
+  return static_cast<double>(std::bit_cast<float>(bits));
+}
+/// The same; kProtocol for a NaN or an infinity.
 Result<double> number_from_bits(NumberType type, std::uint32_t bits);
 /// kLimit when the rounded number does not fit the type, or is not finite.
 Result<std::uint32_t> bits_from_number(NumberType type, double raw);

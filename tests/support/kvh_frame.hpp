@@ -2,9 +2,12 @@
 // The frame layout of the KVH 1750 IMU family, and a frame of it that is known to be good.
 
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include "config/device.hpp"
+#include "drivers/crc.hpp"
+#include "drivers/number_codec.hpp"
 
 namespace fogbench::support {
 
@@ -40,6 +43,22 @@ inline std::vector<std::uint8_t> known_good_frame() {
   return {0xfe, 0x81, 0xff, 0x55, 0x37, 0xa9, 0x6a, 0x6e, 0x38, 0x58, 0x6c, 0x1f,
           0xb7, 0x5b, 0xf8, 0x62, 0xbf, 0x80, 0x3e, 0x78, 0xbb, 0x65, 0x0d, 0x28,
           0x3b, 0x0a, 0x37, 0xac, 0x77, 0x3d, 0x00, 0x28, 0x4b, 0xfa, 0x34, 0xd8};
+}
+
+/// A good frame with this sequence number and rate; the other numbers stand still.
+inline std::vector<std::uint8_t> kvh_frame(std::int64_t sequence, double rate_deg_per_h,
+                                           std::uint8_t status = 0x77) {
+  static const config::FrameDevice device = kvh_device();
+  static const drivers::Crc crc(device.crc);
+  std::vector<std::uint8_t> frame = known_good_frame();
+  const Status written =
+      drivers::write_field(device.rate, device.byte_order, rate_deg_per_h, frame);
+  if (!written) std::abort();
+  frame[device.status_offset_bytes] = status;
+  frame[device.sequence_offset_bytes] =
+      static_cast<std::uint8_t>(sequence % device.sequence_modulus);
+  crc.store(frame.data());
+  return frame;
 }
 
 }  // namespace fogbench::support

@@ -1,0 +1,102 @@
+#include "drivers/serial_gyro.hpp"
+
+#include <fmt/format.h>
+
+#include "drivers/named_error.hpp"
+
+namespace fogbench::drivers {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A gyro sends without pause: ten periods of the slowest instrument (10 Hz) are silence.
+constexpr Clock::Duration kLongestSilence = 1s;
+
+/// A line that never runs empty must not hold the caller for ever. Eight minutes at 1 kHz.
+constexpr std::size_t kMostBytesPerRead = std::size_t{16} << 20;
+
+}  // namespace
+
+SerialGyro::SerialGyro(std::string name, const config::GyroConfig& config,
+                       std::unique_ptr<SerialTransport> transport, Clock& clock)
+    : name_(std::move(name)),
+      identity_(config.device.name),
+      frame_rate_hz_(config.device.frame_rate_hz),
+      transport_(std::move(transport)),
+      clock_(clock),
+      parser_(config.device) {}
+
+Result<std::unique_ptr<SerialGyro>> SerialGyro::open(std::string name,
+                                                     const config::GyroConfig& config,
+                                                     std::unique_ptr<SerialTransport> transport,
+                                                     Clock& clock) {
+  if (const Status layout = check_layout(config.device); !layout) {
+    return named(name, layout.error());
+  }
+  std::unique_ptr<SerialGyro> gyro(
+      new SerialGyro(std::move(name), config, std::move(transport), clock));
+  if (const Status first = gyro->wait_for_first_frame(); !first) return first.error();
+  return gyro;
+}
+
+Status SerialGyro::wait_for_first_frame() {
+  for (std::size_t discarded = 0; discarded < kMostBytesPerRead;) {
+    const auto count = transport_->read_some(parser_.space());
+    if (!count) return named(name_, count.error());
+    if (*count == 0) break;
+    discarded += *count;
+  }
+  // Looking four times a period ties index to clock to a quarter of a period.
+  const Clock::Duration pause = from_seconds(0.25 / frame_rate_hz_);
+  last_good_ = clock_.now();
+  for (GyroBlock first; first.index.empty();) {
+    clock_.sleep_for(pause);
+    if (Status status = read(first); !status) return status;
+  }
+  first_sample_ =
+      last_good_ - from_seconds((static_cast<double>(parser_.last_index()) + 0.5) / frame_rate_hz_);
+  return {};
+}
+
+Status SerialGyro::read(GyroBlock& out) {
+  const std::uint64_t good_before = parser_.statistics().frames_good;
+  Status failure;
+  bool empty = false;
+  for (std::size_t total = 0; total < kMostBytesPerRead && !empty;) {
+    const auto count = transport_->read_some(parser_.space());
+    if (!count) {
+      failure = named(name_, count.error());
+      break;
+    }
+    parser_.parse(*count, out);
+    total += *count;
+    bytes_since_good_ += *count;
+    empty = *count == 0;
+  }
+  const Clock::Instant now = clock_.now();
+  parser_.settle(empty ? std::optional(now) : std::nullopt, out);
+  if (!failure) return failure;
+  if (parser_.statistics().frames_good > good_before) {
+    last_good_ = now;
+    bytes_since_good_ = 0;
+    return {};
+  }
+  if (now - last_good_ <= kLongestSilence) return {};
+  const double silence = to_seconds(now - last_good_);
+  if (bytes_since_good_ == 0) {
+    return Error{ErrorCode::kTimeout, fmt::format("{}: no frame for {:.1f} s, expected {} a second",
+                                                  name_, silence, frame_rate_hz_)};
+  }
+  return Error{
+      ErrorCode::kProtocol,
+      fmt::format("{}: {} bytes in {:.1f} s but no good frame ({} with a wrong check value,"
+                  " {} invalid so far)",
+                  name_, bytes_since_good_, silence, parser_.statistics().frames_bad_checksum,
+                  parser_.statistics().frames_invalid)};
+}
+
+Clock::Instant SerialGyro::time_of(std::int64_t index) const {
+  return first_sample_ + from_seconds(static_cast<double>(index) / frame_rate_hz_);
+}
+
+}  // namespace fogbench::drivers

@@ -1,0 +1,49 @@
+#pragma once
+// A gyro that streams frames over a serial line.
+
+#include <memory>
+#include <string>
+
+#include "config/bench.hpp"
+#include "drivers/frame_parser.hpp"
+#include "drivers/instruments.hpp"
+#include "drivers/transport.hpp"
+
+namespace fogbench::drivers {
+
+class SerialGyro final : public Gyro {
+ public:
+  /// Throws away what the line has kept from before, then waits for a first good frame, whose
+  /// arrival ties index to clock. `name` stands in front of every message; `clock` must outlive
+  /// the gyro. Errors: kBadInput for a layout that cannot be, kTimeout, kProtocol, the transport's.
+  static Result<std::unique_ptr<SerialGyro>> open(std::string name,
+                                                  const config::GyroConfig& config,
+                                                  std::unique_ptr<SerialTransport> transport,
+                                                  Clock& clock);
+
+  Result<std::string> identity() override { return identity_; }
+  /// Silent for longer than a second: kTimeout when no byte came, kProtocol when bytes came but no
+  /// good frame was among them (wrong baud rate, wrong layout). Good frames are appended even when
+  /// an error is returned.
+  Status read(GyroBlock& out) override;
+  const StreamStatistics& statistics() const override { return parser_.statistics(); }
+  Clock::Instant time_of(std::int64_t index) const override;
+  double frame_rate_hz() const override { return frame_rate_hz_; }
+
+ private:
+  SerialGyro(std::string name, const config::GyroConfig& config,
+             std::unique_ptr<SerialTransport> transport, Clock& clock);
+  Status wait_for_first_frame();
+
+  std::string name_;
+  std::string identity_;
+  double frame_rate_hz_;
+  std::unique_ptr<SerialTransport> transport_;
+  Clock& clock_;
+  FrameParser parser_;
+  Clock::Instant first_sample_{};  ///< middle of the sample with index 0
+  Clock::Instant last_good_{};     ///< when a good frame was last received
+  std::size_t bytes_since_good_ = 0;
+};
+
+}  // namespace fogbench::drivers

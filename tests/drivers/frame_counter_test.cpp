@@ -1,0 +1,165 @@
+#include "drivers/frame_counter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace fogbench::drivers {
+namespace {
+
+/// A gyro at 1 kHz whose frames each carry the true index as their rate, read now and then.
+class CounterTest : public testing::Test {
+ protected:
+  /// Frames first ... last arrive.
+  void receive(std::int64_t first, std::int64_t last, std::int64_t skipped = 0) {
+    for (std::int64_t i = first; i <= last; ++i) {
+      const auto sequence = static_cast<std::uint32_t>((i + 90) % 128);
+      block_.index.push_back(counter_.advance(sequence, i == first ? skipped : 0, entries_++));
+      block_.rate_deg_per_h.push_back(static_cast<float>(i));
+    }
+  }
+  void settle_at(double seconds, std::int64_t periods_since = 0) {
+    counter_.settle(Clock::Instant{from_seconds(seconds)}, periods_since, entries_, block_,
+                    statistics_);
+    entries_ = 0;
+  }
+  /// Each index that came out, against the true one.
+  void expect_aligned() const {
+    for (std::size_t i = 0; i < block_.index.size(); ++i) {
+      ASSERT_EQ(block_.index[i], static_cast<std::int64_t>(block_.rate_deg_per_h[i]));
+    }
+  }
+
+  FrameCounter counter_{128, 1000.0};
+  GyroBlock block_;
+  StreamStatistics statistics_;
+  std::size_t entries_ = 0;
+};
+
+TEST_F(CounterTest, ASilenceOfExactlySomeTurnsIsNotInvisible) {
+  for (const std::int64_t turns : {1, 2, 7, 100}) {
+    FrameCounter fresh{128, 1000.0};
+    std::swap(counter_, fresh);
+    block_.clear();
+    const std::int64_t lost = turns * 128;
+    receive(0, 99);
+    settle_at(0.1);
+    settle_at(0.1 + static_cast<double>(lost) * 0.001);  // nothing came
+    receive(100 + lost, 199 + lost);
+    settle_at(0.2 + static_cast<double>(lost) * 0.001);
+    expect_aligned();
+    EXPECT_EQ(block_.index.size(), 200u);
+    EXPECT_EQ(statistics_.frames_missing, static_cast<std::uint64_t>(lost));
+    statistics_ = {};
+  }
+}
+
+TEST_F(CounterTest, AnySilenceOfAnyLengthKeepsIndexAndTimeTogether) {
+  for (std::int64_t lost = 1; lost < 700; ++lost) {
+    FrameCounter fresh{128, 1000.0};
+    std::swap(counter_, fresh);
+    block_.clear();
+    receive(0, 49);
+    settle_at(0.05);
+    for (double t = 0.1; t < 0.05 + 0.001 * static_cast<double>(lost); t += 0.05) settle_at(t);
+    receive(50 + lost, 99 + lost);
+    settle_at(0.1 + 0.001 * static_cast<double>(lost));
+    expect_aligned();
+    ASSERT_EQ(block_.index.size(), 100u) << lost;
+  }
+}
+
+TEST_F(CounterTest, ALineThatFallsSilentWithinAReadDoesNotMoveItsLastFrames) {
+  receive(0, 999);
+  settle_at(1.0);
+  receive(1000, 1299);  // then silence until 5.5 s
+  for (const double t : {2.0, 3.0, 4.0, 5.0}) settle_at(t);
+  receive(5500, 5999);
+  settle_at(6.0);
+  expect_aligned();
+  EXPECT_EQ(block_.index.size(), 1800u);
+}
+
+TEST_F(CounterTest, ASilenceInsideOneReadIsPutAtItsJump) {
+  receive(0, 999);
+  settle_at(1.0);
+  receive(1000, 1299);
+  receive(1500, 1999);
+  settle_at(2.0);
+  expect_aligned();
+}
+
+TEST_F(CounterTest, AWholeTurnLostInsideOneReadShowsInTheNext) {
+  receive(0, 999);
+  settle_at(1.0);
+  receive(1000, 1299);
+  receive(1428, 1999);  // 128 lost: no jump to be seen
+  settle_at(2.0);
+  receive(2000, 2999);
+  settle_at(3.0);
+  EXPECT_EQ(block_.index.back(), 2999);
+  EXPECT_EQ(statistics_.frames_missing, 128u);
+}
+
+TEST_F(CounterTest, DamagedFramesAreNoSilence) {
+  receive(0, 999);
+  settle_at(1.0);
+  receive(1300, 1999, 300);  // the bytes of 300 frames were thrown away: two turns and 44
+  settle_at(2.0);
+  expect_aligned();
+}
+
+TEST_F(CounterTest, DamagedFramesAtTheEndOfAReadAreNoSilence) {
+  receive(0, 999);
+  settle_at(1.0);
+  receive(1000, 1499);
+  settle_at(2.0, 500);
+  receive(2000, 2999, 500);
+  settle_at(3.0);
+  expect_aligned();
+}
+
+TEST_F(CounterTest, FramesThatCameBeforeAreRepeatsNotAnotherTurn) {
+  receive(0, 999);
+  settle_at(1.0);
+  receive(1000, 1499);
+  receive(1400, 1999);  // a hundred of them again
+  settle_at(2.0);
+  receive(2000, 2999);
+  settle_at(3.0);
+  expect_aligned();
+  EXPECT_EQ(block_.index.size(), 3000u);
+  EXPECT_EQ(statistics_.frames_repeated, 100u);
+  EXPECT_EQ(statistics_.frames_missing, 0u);
+}
+
+TEST_F(CounterTest, JitterAndASlowOscillatorDoNotMoveTheIndex) {
+  // 100 ppm slow and 30 ms late at random, for an hour: 360 periods of drift in all.
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> late(0.0, 0.03);
+  std::int64_t next = 0;
+  for (int second = 1; second <= 3600; ++second) {
+    const auto arrived = static_cast<std::int64_t>(second * 1000.0 * (1.0 - 1e-4));
+    receive(next, arrived - 1);
+    next = arrived;
+    settle_at(second + late(random));
+  }
+  expect_aligned();
+  EXPECT_EQ(statistics_.frames_missing, 0u);
+}
+
+TEST_F(CounterTest, AFastOscillatorDoesNotMoveTheIndexEither) {
+  std::int64_t next = 0;
+  for (int second = 1; second <= 3600; ++second) {
+    const auto arrived = static_cast<std::int64_t>(second * 1000.0 * (1.0 + 1e-3));
+    receive(next, arrived - 1);
+    next = arrived;
+    settle_at(second);
+  }
+  expect_aligned();
+  EXPECT_EQ(statistics_.frames_repeated, 0u);
+}
+
+}  // namespace
+}  // namespace fogbench::drivers
