@@ -47,12 +47,15 @@ struct UnitSuffix {
 };
 
 inline constexpr UnitSuffix kUnitSuffixes[] = {
-    // Longest suffix first: the first match wins.
+    // The first match wins: a suffix that ends with another stands before it.
     {"_deg_per_h_per_sqrt_h", "deg/h/sqrt(h)"},
     {"_deg_per_sqrt_h", "deg/sqrt(h)"},
     {"_deg_per_h", "deg/h"},
     {"_c_per_h", "degC/h"},
     {"_ut_per_a", "uT/A"},
+    {"_c_per_w", "degC/W"},
+    {"_w_per_k", "W/K"},
+    {"_j_per_k", "J/K"},
     {"_deg", "deg"},
     {"_ut", "uT"},
     {"_hz", "Hz"},

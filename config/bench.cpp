@@ -1,0 +1,128 @@
+#include "config/bench.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "config/describe_bench.hpp"
+
+namespace fogbench::config {
+namespace {
+
+/// YYYY-MM-DD, a day that exists.
+bool is_date(const std::string& text) {
+  if (text.size() != 10 || text[4] != '-' || text[7] != '-') return false;
+  for (const std::size_t i : {0U, 1U, 2U, 3U, 5U, 6U, 8U, 9U}) {
+    if (text[i] < '0' || text[i] > '9') return false;
+  }
+  const std::chrono::year_month_day date{
+      std::chrono::year{std::stoi(text.substr(0, 4))},
+      std::chrono::month{static_cast<unsigned>(std::stoi(text.substr(5, 2)))},
+      std::chrono::day{static_cast<unsigned>(std::stoi(text.substr(8, 2)))}};
+  return date.ok();
+}
+
+}  // namespace
+
+std::optional<DeviceFile> read_named_device(const Place& at) {
+  std::string name;
+  if (!read_text(at, name)) return std::nullopt;
+  const std::filesystem::path file = (at.file().parent_path() / name).lexically_normal();
+  auto device = load_device(file);
+  if (!device) {
+    const bool inside_bench = !std::filesystem::is_regular_file(file);
+    inside_bench ? at.fail(device.error().message) : at.fail(device.error());
+    return std::nullopt;
+  }
+  return std::move(*device);
+}
+
+bool check(const Place& at, const InstrumentConfig& i) {
+  constexpr std::array<std::string_view, 5> kSchemes = {"tcp:", "rtu:", "usb:", "hid:", "tty:"};
+  const bool known =
+      i.connection == "simulated" ||
+      std::any_of(kSchemes.begin(), kSchemes.end(), [&](std::string_view scheme) {
+        return i.connection.starts_with(scheme) && i.connection.size() > scheme.size();
+      });
+  if (!known) {
+    return (at / "connection")
+        .wrong("\"simulated\", or an address that starts with tcp:, rtu:, usb:, hid: or tty:");
+  }
+  for (const auto& [key, date] : {std::pair{"calibrated_on", &i.calibrated_on},
+                                  std::pair{"calibration_due", &i.calibration_due}}) {
+    if (!date->empty() && !is_date(*date)) return (at / key).wrong("a date, YYYY-MM-DD");
+  }
+  return true;
+}
+
+bool check(const Place& at, const ThermostatConfig& t) {
+  return check(at, static_cast<const InstrumentConfig&>(t));
+}
+
+bool check(const Place& at, const MagnetometerConfig& m) {
+  return check(at, static_cast<const InstrumentConfig&>(m));
+}
+
+bool check(const Place& at, const CoilConfig& c) {
+  if (!check(at, static_cast<const InstrumentConfig&>(c))) return false;
+  if (c.device.unit != "A") {
+    return (at / "device")
+        .fail(fmt::format("sets {}; expected a supply that sets A", c.device.unit));
+  }
+  const double most = std::min(c.device.maximum, -c.device.minimum);
+  if (c.current_limit.value > most) {
+    return (at / "current_limit_a")
+        .wrong(fmt::format("at most {} A, what {} gives in both "
+                           "directions",
+                           most, c.device.name));
+  }
+  return true;
+}
+
+bool check(const Place& at, const TurntableConfig& t) {
+  if (!check(at, static_cast<const InstrumentConfig&>(t))) return false;
+  if (t.motorised != t.device.has_value()) {
+    return (at / "device")
+        .wrong(t.motorised ? "a device file: the turntable is motorised"
+                           : "none: the turntable is not motorised");
+  }
+  if (t.device && t.device->unit != "deg") {
+    return (at / "device")
+        .fail(fmt::format("sets {}; expected a turntable that sets deg", t.device->unit));
+  }
+  return true;
+}
+
+bool check(const Place& at, const GyroConfig& g) {
+  if (!check(at, static_cast<const InstrumentConfig&>(g))) return false;
+  if (!check_frame_rate(at, g.device)) return false;
+  return g.max_gap.count() * g.device.frame_rate_hz >= 1.0 ||
+         (at / "max_gap_s")
+             .wrong(fmt::format("at least one frame, {} s", 1.0 / g.device.frame_rate_hz));
+}
+
+bool check(const Place& at, const MagneticPlant& m) {
+  return is_invertible(m.sensor_matrix) ||
+         (at / "sensor_matrix").fail("cannot be inverted; expected a matrix near the unit matrix");
+}
+
+bool check(const Place& at, const BenchConfig& b) {
+  const Place limits = at / "limits";
+  if (b.limits.temperature_minimum >= b.limits.temperature_maximum) {
+    return (limits / "temperature_minimum_c")
+        .wrong(
+            fmt::format("less than temperature_maximum_c {}", b.limits.temperature_maximum.value));
+  }
+  if (b.limits.temperature_maximum > b.thermostat.device.target_maximum) {
+    return (limits / "temperature_maximum_c")
+        .fail(fmt::format("{} degC; expected at most the thermostat's target_maximum_c {}",
+                          b.limits.temperature_maximum.value,
+                          b.thermostat.device.target_maximum.value));
+  }
+  return true;
+}
+
+Result<BenchConfig> load_bench(const std::filesystem::path& file) {
+  return read_config<BenchConfig>(file);
+}
+
+}  // namespace fogbench::config

@@ -1,0 +1,198 @@
+#pragma once
+// The JSON shape of benches (bench.hpp): keys, sentences, bounds.
+
+#include "config/bench.hpp"
+#include "config/codec.hpp"
+#include "config/describe_device.hpp"
+
+namespace fogbench::config {
+
+/// A key that names a device file, relative to the file that it stands in.
+template <class Device>
+struct DeviceReference {
+  Device& device;
+};
+
+/// Reads the device file named at `at`; the caller takes the kind that it needs.
+std::optional<DeviceFile> read_named_device(const Place& at);
+
+template <class Device>
+struct Codec<DeviceReference<Device>> {
+  static bool read(const Place& at, DeviceReference<Device>& out, const Rule& /*rule*/) {
+    std::optional<DeviceFile> file = read_named_device(at);
+    if (!file) return false;
+    auto* device = std::get_if<Device>(&*file);
+    if (device == nullptr) return at.fail("names a device of the wrong kind for this instrument");
+    out.device = std::move(*device);
+    return true;
+  }
+  static ordered_json schema(const Rule& /*rule*/) { return Codec<std::string>::schema({}); }
+  static ordered_json write(const DeviceReference<Device>& reference) {
+    return reference.device.name;
+  }
+};
+template <class Device>
+struct Codec<DeviceReference<std::optional<Device>>> : Codec<DeviceReference<Device>> {
+  static bool read(const Place& at, DeviceReference<std::optional<Device>>& out, const Rule& rule) {
+    DeviceReference<Device> inside{out.device.emplace()};
+    return Codec<DeviceReference<Device>>::read(at, inside, rule);
+  }
+  static ordered_json write(const DeviceReference<std::optional<Device>>& reference) {
+    return reference.device ? ordered_json(reference.device->name) : ordered_json(nullptr);
+  }
+};
+
+bool check(const Place& at, const InstrumentConfig& instrument);
+
+template <class Visitor>
+void describe_instrument(Visitor& v, InstrumentConfig& i) {
+  v.optional("connection", i.connection,
+             "\"simulated\", or where it is: tcp:HOST:PORT, rtu:TTY:BAUD, "
+             "usb:VENDOR:PRODUCT:SERIAL, hid:VENDOR:PRODUCT:SERIAL, tty:TTY.");
+  v.optional("serial_number", i.serial_number, "For the protocol of the acceptance.");
+  v.optional("calibrated_on", i.calibrated_on, "Date of the certificate, YYYY-MM-DD.");
+  v.optional("calibration_due", i.calibration_due, "Date until which it is valid, YYYY-MM-DD.");
+}
+
+template <class Visitor>
+void describe(Visitor& v, ThermostatConfig& t) {
+  describe_instrument(v, t);
+  v.required("device", DeviceReference<ModbusDevice>{t.device},
+             "Its description, a device file of the kind modbus, relative to this file.");
+}
+
+template <class Visitor>
+void describe(Visitor& v, MagnetometerConfig& m) {
+  describe_instrument(v, m);
+  v.required("device", DeviceReference<HidDevice>{m.device},
+             "Its description, a device file of the kind hid, relative to this file.");
+  MagnetometerCalibration calibration{m.device.calibration_offset_ut, m.device.calibration_matrix};
+  v.optional("calibration", calibration,
+             "Correction from this instrument's certificate, in place of the device file's.");
+}
+
+template <class Visitor>
+void describe(Visitor& v, CoilConfig& c) {
+  describe_instrument(v, c);
+  v.required("device", DeviceReference<ScpiDevice>{c.device},
+             "Its supply's description, a device file of the kind scpi, relative to this file.");
+  v.optional("field_ut_per_a", c.field_ut_per_a, "Nominal field at the centre per ampere.",
+             above(0));
+  v.optional("current_limit_a", c.current_limit, "Largest current of either sign.", above(0));
+}
+
+template <class Visitor>
+void describe(Visitor& v, TurntableConfig& t) {
+  describe_instrument(v, t);
+  v.optional("motorised", t.motorised, "false: the operator is asked to turn the gyro.");
+  v.optional("device", DeviceReference<std::optional<ScpiDevice>>{t.device},
+             "Its description when motorised, a device file of the kind scpi.");
+  v.optional("move_time_s", t.move_time, "Typical time of a rotation, for the plan.", at_least(0));
+}
+
+template <class Visitor>
+void describe(Visitor& v, GyroConfig& g) {
+  describe_instrument(v, g);
+  v.required("device", DeviceReference<FrameDevice>{g.device},
+             "Its description, a device file of the kind frame, relative to this file.");
+  v.optional("frame_rate_hz", g.device.frame_rate_hz,
+             "Frames a second that this gyro is set to, in place of the device file's.",
+             between(0.1, 100000));
+  v.optional("reference_rate_deg_per_h", g.reference_rate,
+             "Earth's rate along the sensitive axis here; subtracted from every reading.");
+  v.optional("max_gap_s", g.max_gap,
+             "Longest run of consecutive lost frames that an average survives.", above(0));
+}
+
+template <class Visitor>
+void describe(Visitor& v, BenchLimits& l) {
+  v.optional("temperature_minimum_c", l.temperature_minimum, "Lowest temperature of the gyro.");
+  v.optional("temperature_maximum_c", l.temperature_maximum, "Highest temperature of the gyro.");
+  v.optional("field_maximum_ut", l.field_maximum, "Largest field along any axis.", above(0));
+  v.optional("run_time_maximum_s", l.run_time_maximum, "Longest run.", above(0));
+}
+
+template <class Visitor>
+void describe(Visitor& v, ThermalPlant& t) {
+  v.optional("heater_j_per_k", t.heater_j_per_k, "Heat capacity of the heaters.", above(0));
+  v.optional("carrier_j_per_k", t.carrier_j_per_k, "Heat capacity of the coil carrier.", above(0));
+  v.optional("coil_j_per_k", t.coil_j_per_k, "Heat capacity of the fibre coil.", above(0));
+  v.optional("heater_carrier_w_per_k", t.heater_carrier_w_per_k, "Heaters to carrier.", above(0));
+  v.optional("carrier_coil_w_per_k", t.carrier_coil_w_per_k, "Carrier to fibre coil.", above(0));
+  v.optional("carrier_ambient_w_per_k", t.carrier_ambient_w_per_k,
+             "Loss to the room; at most 0.265 if 9 W are to hold +34 degC.", above(0));
+  v.optional("boost_maximum_w", t.boost_maximum, "Power of all boost heaters.", above(0));
+  v.optional("normal_maximum_w", t.normal_maximum, "Power of the normal heater.", above(0));
+  v.optional("boost_drop_out_c", t.boost_drop_out,
+             "The boost heaters switch off this far below the target.", at_least(0));
+  v.optional("dead_time_s", t.dead_time, "From a change of power to the carrier.", at_least(0));
+  v.optional("pid_gain_w_per_k", t.pid_gain_w_per_k, "Gain of the controller.", above(0));
+  v.optional("pid_integral_s", t.pid_integral, "Its integral time.", above(0));
+  v.optional("pid_derivative_s", t.pid_derivative, "Its derivative time.", at_least(0));
+  v.optional("sensor_noise_c", t.sensor_noise, "Standard deviation of a reading.", at_least(0));
+  v.optional("sensor_resolution_c", t.sensor_resolution, "Step of a reading.", at_least(0));
+  v.optional("sensor_offset_c", t.sensor_offset_c, "Error of working 1, working 2 and control.");
+  v.optional("sensor_lag_s", t.sensor_lag, "First-order lag of the sensors.", at_least(0));
+  v.optional("ambient_c", t.ambient, "The room.");
+  v.optional("ambient_wander_c", t.ambient_wander, "Amplitude of its slow change.", at_least(0));
+  v.optional("ambient_period_s", t.ambient_period, "Period of its slow change.", above(0));
+  v.optional("gradient_c_per_w", t.gradient_c_per_w,
+             "Working 1 less working 2, per watt of boost heating.");
+}
+
+template <class Visitor>
+void describe(Visitor& v, MagneticPlant& m) {
+  v.optional("ambient_ut", m.ambient_ut, "Ambient field in the bench frame: up, north, east.");
+  v.optional("ambient_diurnal_ut", m.ambient_diurnal, "Amplitude of its daily change.",
+             at_least(0));
+  v.optional("ambient_steps_per_h", m.ambient_steps_per_h,
+             "Mean number an hour of its steps by lifts and cars.", at_least(0));
+  v.optional("ambient_step_ut", m.ambient_step, "Size of these steps.", at_least(0));
+  v.optional("coil_ut_per_a", m.coil_ut_per_a, "True field per ampere: horizontal, vertical pair.",
+             above(0));
+  v.optional("coil_misalignment_deg", m.coil_misalignment_deg,
+             "Of the horizontal and the vertical pair's axis.", between(-10, 10));
+  v.optional("supply_bits", m.supply_bits, "Resolution of the supplies, besides the sign.",
+             between(4, 32));
+  v.optional("sensor_offset_ut", m.sensor_offset_ut, "What the magnetometer reads in zero field.");
+  v.optional("sensor_matrix", m.sensor_matrix,
+             "Rows of the matrix that takes the true field to the magnetometer's.");
+  v.optional("sensor_noise_ut", m.sensor_noise, "Standard deviation of a reading.", at_least(0));
+}
+
+template <class Visitor>
+void describe(Visitor& v, SimulationConfig& s) {
+  v.optional("thermal", s.thermal, "Gyro, heaters, thermostat and room.");
+  v.optional("magnetic", s.magnetic, "Coils, ambient field and magnetometer.");
+  v.optional("turntable_repeatability_deg", s.turntable_repeatability,
+             "Standard deviation of a position.", at_least(0));
+  v.optional("earth_rate_on_axis_deg_per_h", s.earth_rate_on_axis,
+             "Earth's rate along the sensitive axis.");
+  v.optional("step_s", s.step, "Of the integration.", between(0.001, 10));
+}
+
+template <class Visitor>
+void describe(Visitor& v, BenchConfig& b) {
+  v.required("name", b.name, "Short name.");
+  v.optional("description", b.description, "What this bench is, in a sentence.");
+  v.required("thermostat", b.thermostat, "Controller of the gyro's heaters.");
+  v.required("coil_horizontal", b.coil_horizontal,
+             "Horizontal pair of rings and its supply: field along the vertical.");
+  v.required("coil_vertical", b.coil_vertical,
+             "Vertical pair of rings and its supply: field along north.");
+  v.required("magnetometer", b.magnetometer, "Mounted with the gyro, reads the gyro's axes.");
+  v.required("turntable", b.turntable, "Turns the gyro in azimuth.");
+  v.required("gyro", b.gyro, "The gyro under test.");
+  v.optional("limits", b.limits, "What no procedure may exceed here.");
+  v.optional("simulation", b.simulation, "The true plant behind simulated instruments.");
+}
+
+bool check(const Place& at, const ThermostatConfig& thermostat);
+bool check(const Place& at, const MagnetometerConfig& magnetometer);
+bool check(const Place& at, const CoilConfig& coil);
+bool check(const Place& at, const TurntableConfig& turntable);
+bool check(const Place& at, const GyroConfig& gyro);
+bool check(const Place& at, const MagneticPlant& plant);
+bool check(const Place& at, const BenchConfig& bench);
+
+}  // namespace fogbench::config
