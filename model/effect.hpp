@@ -4,9 +4,6 @@
 // catalogue.cpp.
 
 #include <Eigen/Core>
-#include <functional>
-#include <map>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +21,8 @@ struct InnerParameter {
   double minimum;  ///< typical range: the search grid's ends
   double maximum;
   bool logarithmic = true;  ///< spacing of the grid
+  /// A signal whose observed range takes the place of the typical one; empty: none.
+  std::string_view within = {};
 };
 
 struct EffectInfo {
@@ -36,6 +35,9 @@ struct EffectInfo {
   std::string_view excited_by;
   std::string_view confused_with;
   std::string_view source;
+  /// The regressor depends on earlier rows of the run: it is computed on whole signals, never on a
+  /// block of them.
+  bool has_history = false;
 };
 
 /// An effect's regressor on a table's signals.
@@ -43,8 +45,9 @@ class Effect {
  public:
   virtual ~Effect() = default;
   virtual const EffectInfo& info() const = 0;
-  /// rows x info().columns.size(); NaN where a needed signal is missing. `inner` in the order of
-  /// info().parameters. Precondition: signals.missing_for(info()) is empty.
+  /// rows x info().columns.size(), in the order of the signals; NaN where a needed signal is
+  /// missing. `inner` in the order of info().parameters, within the sense of the effect (times and
+  /// widths positive). Precondition: signals.missing_for(info()) is empty.
   virtual Eigen::MatrixXd regressor(const Signals& signals,
                                     std::span<const double> inner) const = 0;
 };
@@ -53,5 +56,7 @@ class Effect {
 std::span<const Effect* const> catalogue();
 /// Null when there is no such effect.
 const Effect* find_effect(std::string_view id);
+/// "unknown effect 'x', did you mean 'y', 'z'?" with the nearest names of the catalogue.
+std::string unknown_effect(std::string_view id);
 
 }  // namespace fogbench::model

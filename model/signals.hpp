@@ -1,10 +1,20 @@
 #pragma once
-// What effects act on, taken or derived from a table: normalised field h = H/100 uT, temperature
-// t = T - T_ref, time since power-on and since the run's start, temperature rate. What can be
-// derived from other columns is derived (the rate from temperature and time); what cannot is named.
+// What effects act on: a table's columns in the order in which things happened (run by run, by
+// time_s within a run), and what can be derived from them. What can be neither found nor derived is
+// named.
+//
+// Derived when the table lacks it:
+//   temperature_rate_c_per_h  slope of temperature_c over the rows within 30 s (at least the
+//                             neighbouring rows), least squares
+//   temperature_acceleration_c_per_h2  the same slope of the temperature rate
+//   duration_s                0: a row is then a sample, not an average
+//   coil_heat                 sum of the squared fields present, (100 uT)^2; without any field,
+//                             coil_current_a squared, A^2
+//   time_since_start_s        time_s minus that of the run's first row
 
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,33 +26,56 @@ namespace fogbench::model {
 
 struct EffectInfo;
 
+/// Cheap to copy. Not thread-safe: signals are derived when first asked for.
 class Signals {
  public:
+  using View = Eigen::Map<const Eigen::VectorXd>;
+  /// Rows [begin, end) of one run.
+  struct RunRange {
+    std::size_t begin, end;
+  };
+
   /// The table must outlive the signals.
   Signals(const Table& table, double reference_temperature_c);
 
   const Table& table() const { return table_; }
-  std::size_t rows() const { return table_.rows(); }
-  /// Rows [begin, end) of run i; rows of one run are contiguous (a table that mixes them is sorted
-  /// by run first).
-  struct RunRange {
-    std::size_t begin, end;
-  };
-  const std::vector<RunRange>& runs() const { return runs_; }
+  std::size_t rows() const { return end_ - begin_; }
+  double reference_temperature_c() const { return reference_temperature_c_; }
+  /// The runs, contiguous, in the order of their first row in the table.
+  const std::vector<RunRange>& runs() const { return shared_->runs; }
+  /// The table's row that stands at `row` here.
+  std::size_t table_row(std::size_t row) const;
+  /// Rows [begin, end) of these signals, for effects that need no history.
+  Signals block(std::size_t begin, std::size_t end) const;
 
-  /// A column of the table, or one derived for it ("temperature_rate_c_per_h" from temperature_c
-  /// and time_s). Precondition: available(name).
-  Eigen::Map<const Eigen::VectorXd> signal(std::string_view name) const;
+  /// A column of the table, or one derived for it. Precondition: available(name).
+  View signal(std::string_view name) const;
+  /// In the table with at least one number, or derivable.
   bool available(std::string_view name) const;
   /// The columns that the effect needs and that neither stand in the table nor can be derived.
   std::vector<std::string> missing_for(const EffectInfo& info) const;
-  double reference_temperature_c() const { return reference_temperature_c_; }
 
  private:
+  using Values = std::vector<double>;
+  struct Shared {
+    std::vector<RunRange> runs;
+    std::vector<std::size_t> order;  ///< empty: as in the table
+    std::map<std::string, Values, std::less<>> derived;
+  };
+
+  void put_in_order();
+  Values derive(std::string_view name) const;
+  /// Least squares over the rows near each row, NaN where there are too few.
+  Values slope_per_hour(std::string_view name) const;
+  Values coil_heat() const;
+  Values time_since_start() const;
+  bool has_numbers(std::string_view name) const;
+  View whole(std::string_view name) const;
+
   const Table& table_;
   double reference_temperature_c_;
-  std::vector<RunRange> runs_;
-  std::map<std::string, std::vector<double>, std::less<>> derived_;
+  std::size_t begin_ = 0, end_ = 0;
+  std::shared_ptr<Shared> shared_;
 };
 
 }  // namespace fogbench::model

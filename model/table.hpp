@@ -1,6 +1,6 @@
 #pragma once
 // A measurement table: named columns of numbers (NaN is missing), with the run and the segment of
-// each row. Rows are in time order within a run.
+// each row.
 
 #include <cstdint>
 #include <filesystem>
@@ -28,6 +28,9 @@ class Table {
   /// Precondition: has(name). One value per row.
   std::span<const double> column(std::string_view name) const;
   std::vector<std::string> column_names() const;
+  /// One line that says why the table lacks the column: it was dropped because of its text (file,
+  /// line, what was found), or it was never there (and which columns are).
+  std::string why_missing(std::string_view name) const;
 
   /// "1" and "" for every row where the source has no such column.
   const TextColumn& run() const { return run_; }
@@ -37,6 +40,8 @@ class Table {
   void set_column(std::string name, std::vector<double> values);
   void set_run(TextColumn run);
   void set_segment(TextColumn segment);
+  /// Remembers why a column of the source is not in the table.
+  void set_dropped(std::string name, std::string because);
 
   /// Rows for which `keep` is true, in their order.
   Table select(const std::vector<bool>& keep) const;
@@ -44,15 +49,20 @@ class Table {
   void append(const Table& other);
 
  private:
+  void set_rows(std::size_t rows);
+
   std::size_t rows_ = 0;
   std::map<std::string, std::vector<double>, std::less<>> columns_;
+  std::map<std::string, std::string, std::less<>> dropped_;
   TextColumn run_, segment_;
 };
 
-/// Reads CSV: first line names, comma-separated, '.' decimals, empty or NaN missing, lines at most
-/// 1 MiB. `renames` maps a wanted name to the file's ("rate_deg_per_h" -> "omega").
-/// Text in a column of numbers is kBadInput with file, line and column, except in columns that are
-/// not of the measurement table (kept only when numeric).
+/// Reads CSV: comma-separated, first line names (after any lines that begin with '#'), '.'
+/// decimals, empty or NaN missing, lines at most 1 MiB, empty lines and columns without a name
+/// skipped. `renames` maps a wanted name to the file's ("rate_deg_per_h" -> "omega"); the column
+/// that had the wanted name, if any, is dropped.
+/// Text in a column of numbers is kBadInput with file, line and column; a column that is not of the
+/// measurement table is dropped instead.
 Result<Table> read_csv(const std::filesystem::path& file,
                        const std::map<std::string, std::string>& renames = {});
 

@@ -1,0 +1,27 @@
+// The coils warm the bench: lagging behind the square of the field.
+
+#include "model/effects/history.hpp"
+#include "model/effects/list.hpp"
+
+namespace fogbench::model::effects {
+
+const FunctionEffect& coil_heating() {
+  static const FunctionEffect effect(
+      {.id = "coil_heating",
+       .formula =
+           "LPF(h_x^2 + h_y^2 + h_z^2; tau), or of the squared coil current without any field",
+       .columns = {""},
+       .units = {"deg/h per (100 uT)^2"},
+       .signals = {"coil_heat", "time_s"},
+       .parameters = {{.name = "tau", .unit = "s", .minimum = 300.0, .maximum = 7200.0}},
+       .excited_by = "large fields held long; even in the field and late",
+       .confused_with = "magnetic_quadratic_*",
+       .source = "copper loss of the coils",
+       .has_history = true},
+      [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+        return lag(signals, signals.signal("coil_heat"), inner[0], Gap::kStepped);
+      });
+  return effect;
+}
+
+}  // namespace fogbench::model::effects

@@ -1,0 +1,65 @@
+#include "model/effects/history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fogbench::model::effects {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// x after `span_s` of an input that moves evenly from `from` to `to`.
+double advanced(double x, double from, double to, double span_s, double tau_s) {
+  if (span_s <= 0.0) return x;
+  const double decay = std::exp(-span_s / tau_s);
+  const double trail = (to - from) * tau_s / span_s;  // how far x runs behind a lasting ramp
+  return to - trail + (x - from + trail) * decay;
+}
+
+}  // namespace
+
+Eigen::VectorXd play(const Signals& signals, const Eigen::VectorXd& u, double width) {
+  Eigen::VectorXd result(u.size());
+  for (const Signals::RunRange& run : signals.runs()) {
+    double state = 0.0;
+    for (auto row = static_cast<Eigen::Index>(run.begin); row < static_cast<Eigen::Index>(run.end);
+         ++row) {
+      if (!std::isnan(u[row])) state = std::min(std::max(state, u[row] - width), u[row] + width);
+      result[row] = std::isnan(u[row]) ? kMissing : state;
+    }
+  }
+  return result;
+}
+
+Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau_s, Gap gap) {
+  const Signals::View time = signals.signal("time_s");
+  const Signals::View duration = signals.signal("duration_s");
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(u.size(), kMissing);
+  for (const Signals::RunRange& run : signals.runs()) {
+    bool started = false;
+    double x = 0.0, previous_u = 0.0, previous_end = 0.0;
+    for (auto row = static_cast<Eigen::Index>(run.begin); row < static_cast<Eigen::Index>(run.end);
+         ++row) {
+      if (std::isnan(u[row]) || std::isnan(time[row])) continue;
+      const double half = std::isnan(duration[row]) ? 0.0 : duration[row] / 2.0;
+      double begin = time[row] - half;
+      if (!started) x = previous_u = u[row];
+      if (started) {
+        begin = std::max(begin, previous_end);  // windows that overlap share their time
+        const double from = gap == Gap::kLinear ? previous_u : u[row];
+        x = advanced(x, from, u[row], begin - previous_end, tau_s);
+      }
+      const double end = std::max(time[row] + half, begin);
+      const double x_end = advanced(x, u[row], u[row], end - begin, tau_s);
+      result[row] = end > begin ? u[row] - tau_s * (x_end - x) / (end - begin) : x;
+      x = x_end;
+      previous_u = u[row];
+      previous_end = end;
+      started = true;
+    }
+  }
+  return result;
+}
+
+}  // namespace fogbench::model::effects

@@ -1,0 +1,28 @@
+#pragma once
+// States that effects carry through a run: the play operator and the first-order lag.
+
+#include <Eigen/Core>
+
+#include "model/signals.hpp"
+
+namespace fogbench::model::effects {
+
+/// The play (backlash) operator of half-width `width`: p follows u at the distance width,
+///   p_i = min(max(p_(i-1), u_i - width), u_i + width),
+/// from p = 0 (virgin: reference temperature, no field) before each run's first row. Rows where u
+/// is missing leave the state alone and are NaN.
+Eigen::VectorXd play(const Signals& signals, const Eigen::VectorXd& u, double width);
+
+/// What u does in the gap between one averaging window's end and the next one's beginning.
+enum class Gap {
+  kLinear,   ///< moves evenly from the one mean to the next (temperatures)
+  kStepped,  ///< takes the next value at once (fields: the supply is fast)
+};
+
+/// The first-order lag tau x' = u - x, x = u at each run's first row. u holds window means and is
+/// constant within a window. The result is x averaged over each window, exactly:
+///   mean(x) = u - tau (x_end - x_begin) / duration,
+/// and x itself where the duration is 0. Rows where u or the time is missing are bridged and NaN.
+Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau_s, Gap gap);
+
+}  // namespace fogbench::model::effects

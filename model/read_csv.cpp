@@ -1,0 +1,426 @@
+// Reads a measurement table from CSV in one pass through a fixed buffer: memory is that of the
+// columns, whatever the file holds.
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "model/table.hpp"
+
+namespace fogbench::model {
+namespace {
+
+constexpr std::size_t kMaximumLine = std::size_t{1} << 20;
+constexpr std::size_t kBuffer = std::size_t{4} << 20;
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// The measurement table's columns of numbers: text in one of them is an error.
+constexpr std::array<std::string_view, 15> kMeasurementColumns = {
+    "rate_deg_per_h", "time_s",          "duration_s",
+    "temperature_c",  "ambient_c",       "rate_std_error_deg_per_h",
+    "heater_w",       "field_x_ut",      "field_y_ut",
+    "field_z_ut",     "azimuth_deg",     "temperature_rate_c_per_h",
+    "coil_current_a", "sigma_deg_per_h", "temperature_gradient_c"};
+
+/// What was found, short and printable.
+std::string shown(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text.substr(0, 40)) {
+    const auto byte = static_cast<unsigned char>(c);
+    result += byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
+  }
+  return result + (text.size() > 40 ? "...'" : "'");
+}
+
+bool has_control_characters(std::string_view text) {
+  return std::any_of(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f;
+  });
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+/// Takes the next field off `line`, and its comma. Returns false when a quote is never closed.
+/// `last` is set when no field follows.
+bool take_field(std::string_view& line, std::string& field, bool& last) {
+  field.clear();
+  std::size_t at = 0;
+  while (at < line.size() && line[at] == ' ') ++at;
+  if (at < line.size() && line[at] == '"') {
+    for (++at; at < line.size(); ++at) {
+      if (line[at] != '"') {
+        field += line[at];
+      } else if (at + 1 < line.size() && line[at + 1] == '"') {
+        field += line[at++];
+      } else {
+        break;
+      }
+    }
+    if (at == line.size()) return false;
+    ++at;
+    while (at < line.size() && line[at] == ' ') ++at;
+    if (at < line.size() && line[at] != ',') return false;
+  } else {
+    at = std::min(line.find(','), line.size());
+    field = trimmed(line.substr(0, at));
+  }
+  last = at >= line.size();
+  line.remove_prefix(last ? line.size() : at + 1);
+  return true;
+}
+
+/// A number, NaN for missing, or nothing when the text is neither.
+std::optional<double> to_number(std::string_view text) {
+  if (text.empty()) return kMissing;
+  if (text.front() == '+') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc() || end != text.data() + text.size() || std::isinf(value)) return {};
+  return value;
+}
+
+/// Lines of a file, at most kMaximumLine bytes each, through one buffer.
+class LineReader {
+ public:
+  explicit LineReader(int file) : file_(file), buffer_(kBuffer) {}
+
+  enum class Outcome { kLine, kEnd, kTooLong, kFailed };
+
+  Outcome next(std::string_view& line) {
+    const char* newline = find_newline();
+    while (newline == nullptr && end_ - begin_ <= kMaximumLine && !finished_) {
+      if (!refill()) return Outcome::kFailed;
+      newline = find_newline();
+    }
+    std::size_t length = 0;
+    if (newline != nullptr) {
+      length = static_cast<std::size_t>(newline - (buffer_.data() + begin_));
+    } else if (end_ - begin_ > kMaximumLine) {
+      return Outcome::kTooLong;
+    } else if (begin_ == end_) {
+      return Outcome::kEnd;
+    } else {
+      length = end_ - begin_;
+    }
+    if (length > kMaximumLine) return Outcome::kTooLong;
+    line = {buffer_.data() + begin_, length};
+    begin_ += length + (newline != nullptr ? 1 : 0);
+    consumed_ += length + 1;
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return Outcome::kLine;
+  }
+
+  /// Bytes of the lines given out so far.
+  std::size_t consumed() const { return consumed_; }
+
+ private:
+  const char* find_newline() const {
+    return static_cast<const char*>(std::memchr(buffer_.data() + begin_, '\n', end_ - begin_));
+  }
+
+  bool refill() {
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+    ssize_t got = 0;
+    do {
+      got = ::read(file_, buffer_.data() + end_, buffer_.size() - end_);
+    } while (got < 0 && errno == EINTR);
+    if (got < 0) return false;
+    finished_ = got == 0;
+    end_ += static_cast<std::size_t>(got);
+    return true;
+  }
+
+  int file_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0, end_ = 0, consumed_ = 0;
+  bool finished_ = false;
+};
+
+/// Closes the file whatever happens.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::filesystem::path& file)
+      : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+class TextBuilder {
+ public:
+  void add(const std::string& text) {
+    const auto [place, is_new] =
+        places_.try_emplace(text, static_cast<std::uint32_t>(column_.values.size()));
+    if (is_new) column_.values.push_back(text);
+    column_.index.push_back(place->second);
+  }
+  TextColumn take() { return std::move(column_); }
+
+ private:
+  TextColumn column_;
+  std::unordered_map<std::string, std::uint32_t> places_;
+};
+
+class CsvReader {
+ public:
+  CsvReader(const std::filesystem::path& file, const std::map<std::string, std::string>& renames)
+      : file_(file), renames_(renames), open_(file), lines_(open_.descriptor()) {}
+
+  Result<Table> read() {
+    struct stat status {};
+    if (open_.descriptor() < 0 || ::fstat(open_.descriptor(), &status) != 0) {
+      return bad(fmt::format("{}: cannot be opened: {}", file_.string(), std::strerror(errno)));
+    }
+    if (S_ISDIR(status.st_mode)) {
+      return bad(fmt::format("{}: found a directory, expected a CSV file", file_.string()));
+    }
+    size_ = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0));
+    if (Status header = read_header(); !header) return header.error();
+    if (Status rows = read_rows(); !rows) return rows.error();
+    return build();
+  }
+
+ private:
+  enum class Kind { kNumber, kOther, kRun, kSegment, kIgnored };
+  struct Column {
+    std::string name;
+    Kind kind = Kind::kOther;
+    std::vector<double> values;
+    std::string dropped;
+  };
+
+  static Error bad(std::string message) { return {ErrorCode::kBadInput, std::move(message)}; }
+  Error bad_line(std::string_view what) const {
+    return bad(fmt::format("{}:{}: {}", file_.string(), line_number_, what));
+  }
+
+  /// False at the end of the file.
+  Result<bool> next_line(std::string_view& line) {
+    const LineReader::Outcome outcome = lines_.next(line);
+    if (outcome == LineReader::Outcome::kEnd) return false;
+    ++line_number_;
+    if (outcome == LineReader::Outcome::kTooLong) {
+      return bad_line("found a line longer than 1 MiB, expected comma-separated values");
+    }
+    if (outcome == LineReader::Outcome::kFailed) {
+      return bad_line(fmt::format("cannot be read: {}", std::strerror(errno)));
+    }
+    return true;
+  }
+
+  Status read_header() {
+    std::string_view line;
+    do {
+      Result<bool> more = next_line(line);
+      if (!more) return more.error();
+      if (!*more) {
+        return bad(fmt::format("{}: found an empty file, expected a line of column names",
+                               file_.string()));
+      }
+      if (line_number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    } while (line.empty() || line.front() == '#');
+    if (has_control_characters(line)) {
+      return bad_line(
+          fmt::format("found {}, expected column names (is this a text file?)", shown(line)));
+    }
+    if (line.find(',') == std::string_view::npos &&
+        line.find_first_of(";\t") != std::string_view::npos) {
+      return bad_line(fmt::format("found {}, expected names separated by commas", shown(line)));
+    }
+    std::string name;
+    for (bool last = false; !last;) {
+      if (!take_field(line, name, last)) {
+        return bad_line("found a quote that is not closed, expected column names");
+      }
+      columns_.push_back({name, {}, {}, {}});
+    }
+    return name_columns();
+  }
+
+  Status name_columns() {
+    for (const auto& [wanted, found] : renames_) {
+      const auto source = std::find_if(columns_.begin(), columns_.end(),
+                                       [&](const Column& c) { return c.name == found; });
+      if (source == columns_.end()) {
+        return bad_line(
+            fmt::format("column {}: not found, expected it because {} is to be read "
+                        "from it",
+                        found, wanted));
+      }
+      for (Column& column : columns_) {
+        if (column.name == wanted) column.name.clear();
+      }
+      source->name = wanted;
+    }
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      Column& column = columns_[i];
+      const bool twice = std::any_of(columns_.begin(), columns_.begin() + static_cast<long>(i),
+                                     [&](const Column& c) { return c.name == column.name; });
+      if (twice && !column.name.empty()) {
+        return bad_line(
+            fmt::format("column {}: found twice, expected each name once", column.name));
+      }
+      column.kind = kind_of(column.name);
+    }
+    return {};
+  }
+
+  static Kind kind_of(const std::string& name) {
+    if (name.empty()) return Kind::kIgnored;
+    if (name == "run") return Kind::kRun;
+    if (name == "segment") return Kind::kSegment;
+    const bool measured = std::find(kMeasurementColumns.begin(), kMeasurementColumns.end(), name) !=
+                          kMeasurementColumns.end();
+    return measured ? Kind::kNumber : Kind::kOther;
+  }
+
+  Status read_rows() {
+    std::string_view line;
+    const std::size_t header_bytes = lines_.consumed();
+    while (true) {
+      Result<bool> more = next_line(line);
+      if (!more) return more.error();
+      if (!*more) break;
+      if (line.empty()) continue;
+      if (Status row = read_row(line); !row) return row;
+      if (++rows_ == 1000) reserve((lines_.consumed() - header_bytes) / rows_);
+    }
+    if (rows_ == 0) {
+      return bad(fmt::format("{}: found a header and no rows, expected at least one row of data",
+                             file_.string()));
+    }
+    return {};
+  }
+
+  /// Room for all rows at once, so that no column is ever copied while it grows.
+  void reserve(std::size_t bytes_per_row) {
+    const std::size_t expected = size_ / std::max<std::size_t>(bytes_per_row, 2);
+    for (Column& column : columns_) {
+      if (column.kind == Kind::kNumber || column.kind == Kind::kOther) {
+        column.values.reserve(expected + expected / 16);
+      }
+    }
+  }
+
+  Status read_row(std::string_view line) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      Column& column = columns_[i];
+      const bool is_last = i + 1 == columns_.size();
+      if (column.kind == Kind::kNumber || column.kind == Kind::kOther) {
+        // The common case first: a plain number, directly followed by its comma or the line's end.
+        const char* const end = line.data() + line.size();
+        double value = 0.0;
+        const auto [stop, failure] = std::from_chars(line.data(), end, value);
+        const bool ends = stop == end ? is_last : *stop == ',' && !is_last;
+        if (failure == std::errc() && ends && !std::isinf(value)) {
+          column.values.push_back(value);
+          line.remove_prefix(static_cast<std::size_t>(stop - line.data()) + (is_last ? 0 : 1));
+          continue;
+        }
+      }
+      bool last = false;
+      if (!take_field(line, field_, last)) {
+        return bad_line(
+            fmt::format("column {}: found a quote that is not closed, expected one "
+                        "around the whole field",
+                        column.name));
+      }
+      if (last != is_last) return wrong_width(i, line, last);
+      if (Status stored = store(column); !stored) return stored;
+    }
+    return {};
+  }
+
+  Status store(Column& column) {
+    switch (column.kind) {
+      case Kind::kIgnored:
+        return {};
+      case Kind::kRun:
+      case Kind::kSegment:
+        if (has_control_characters(field_)) {
+          return bad_line(fmt::format("column {}: found {}, expected printable text", column.name,
+                                      shown(field_)));
+        }
+        (column.kind == Kind::kRun ? run_ : segment_).add(field_);
+        return {};
+      default:
+        break;
+    }
+    const std::optional<double> value = to_number(field_);
+    if (value) {
+      column.values.push_back(*value);
+      return {};
+    }
+    Error error = bad_line(fmt::format("column {}: found {}, expected a finite number or nothing",
+                                       column.name, shown(field_)));
+    if (column.kind == Kind::kNumber) return error;
+    column.kind = Kind::kIgnored;
+    column.values = {};
+    column.dropped = error.message;
+    return {};
+  }
+
+  Error wrong_width(std::size_t column, std::string_view rest, bool line_ended) {
+    std::size_t found = column + 1;
+    for (bool last = line_ended; !last; ++found) {
+      if (!take_field(rest, field_, last)) break;
+    }
+    return bad_line(fmt::format("found {} fields, expected {} as in the line of names", found,
+                                columns_.size()));
+  }
+
+  Table build() {
+    Table table;
+    for (Column& column : columns_) {
+      if (column.kind == Kind::kRun) table.set_run(run_.take());
+      if (column.kind == Kind::kSegment) table.set_segment(segment_.take());
+      if (column.kind == Kind::kNumber || column.kind == Kind::kOther) {
+        table.set_column(column.name, std::move(column.values));
+      }
+      if (!column.dropped.empty()) table.set_dropped(column.name, column.dropped);
+    }
+    return table;
+  }
+
+  const std::filesystem::path& file_;
+  const std::map<std::string, std::string>& renames_;
+  OpenFile open_;
+  LineReader lines_;
+  std::size_t size_ = 0, line_number_ = 0, rows_ = 0;
+  std::vector<Column> columns_;
+  TextBuilder run_, segment_;
+  std::string field_;
+};
+
+}  // namespace
+
+Result<Table> read_csv(const std::filesystem::path& file,
+                       const std::map<std::string, std::string>& renames) {
+  return CsvReader(file, renames).read();
+}
+
+}  // namespace fogbench::model
