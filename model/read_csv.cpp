@@ -1,10 +1,8 @@
 // Reads a measurement table from CSV in one pass through a fixed buffer: memory is that of the
 // columns, whatever the file holds.
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -17,13 +15,12 @@
 #include <unordered_map>
 #include <utility>
 
+#include "model/line_reader.hpp"
 #include "model/table.hpp"
 
 namespace fogbench::model {
 namespace {
 
-constexpr std::size_t kMaximumLine = std::size_t{1} << 20;
-constexpr std::size_t kBuffer = std::size_t{4} << 20;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// The measurement table's columns of numbers: text in one of them is an error.
@@ -94,81 +91,6 @@ std::optional<double> to_number(std::string_view text) {
   if (failure != std::errc() || end != text.data() + text.size() || std::isinf(value)) return {};
   return value;
 }
-
-/// Lines of a file, at most kMaximumLine bytes each, through one buffer.
-class LineReader {
- public:
-  explicit LineReader(int file) : file_(file), buffer_(kBuffer) {}
-
-  enum class Outcome { kLine, kEnd, kTooLong, kFailed };
-
-  Outcome next(std::string_view& line) {
-    const char* newline = find_newline();
-    while (newline == nullptr && end_ - begin_ <= kMaximumLine && !finished_) {
-      if (!refill()) return Outcome::kFailed;
-      newline = find_newline();
-    }
-    std::size_t length = 0;
-    if (newline != nullptr) {
-      length = static_cast<std::size_t>(newline - (buffer_.data() + begin_));
-    } else if (end_ - begin_ > kMaximumLine) {
-      return Outcome::kTooLong;
-    } else if (begin_ == end_) {
-      return Outcome::kEnd;
-    } else {
-      length = end_ - begin_;
-    }
-    if (length > kMaximumLine) return Outcome::kTooLong;
-    line = {buffer_.data() + begin_, length};
-    begin_ += length + (newline != nullptr ? 1 : 0);
-    consumed_ += length + 1;
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    return Outcome::kLine;
-  }
-
-  /// Bytes of the lines given out so far.
-  std::size_t consumed() const { return consumed_; }
-
- private:
-  const char* find_newline() const {
-    return static_cast<const char*>(std::memchr(buffer_.data() + begin_, '\n', end_ - begin_));
-  }
-
-  bool refill() {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-    end_ -= begin_;
-    begin_ = 0;
-    ssize_t got = 0;
-    do {
-      got = ::read(file_, buffer_.data() + end_, buffer_.size() - end_);
-    } while (got < 0 && errno == EINTR);
-    if (got < 0) return false;
-    finished_ = got == 0;
-    end_ += static_cast<std::size_t>(got);
-    return true;
-  }
-
-  int file_;
-  std::vector<char> buffer_;
-  std::size_t begin_ = 0, end_ = 0, consumed_ = 0;
-  bool finished_ = false;
-};
-
-/// Closes the file whatever happens.
-class OpenFile {
- public:
-  explicit OpenFile(const std::filesystem::path& file)
-      : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~OpenFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int descriptor() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
 
 class TextBuilder {
  public:
