@@ -225,6 +225,7 @@ Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const Vector
   double best_without_k = best_without_b;
   for (std::size_t i = 0; i < (too_few ? 1 : shapes.size()); ++i) {
     solutions.push_back(problem.solve(*shapes.whitener(i)));
+    solutions[i].log_weight += shapes.log_prior(i);
     const double weight = solutions[i].log_weight;
     if (weight > solutions[best].log_weight) best = i;
     const NoiseCoefficients& shape = shapes.shape(i);

@@ -6,9 +6,11 @@
 //
 // N is integrated out with a prior flat in log N above the anchor: the median of
 // standard error^2 x duration where the windows state one, else zero. The stated error holds white
-// noise only, so the real N may lie above it, never below. The shapes form a grid, flat in their
-// logarithms plus the corners where B or K is zero; beta and its covariance are averaged over the
-// grid with the posterior weights, so that not knowing the noise widens the intervals.
+// noise only, so the real N may lie above it, never below. The shapes form a grid in the logarithms
+// of B and K plus the corners where they are zero. The prior is flat in log B and in sqrt(K): flat
+// in log K, a walk was believed too small, and intervals under a pure walk held the truth in 89 %
+// of cases instead of 92 %. beta and its covariance are averaged over the grid with the posterior
+// weights, so that not knowing the noise widens the intervals.
 
 #include <Eigen/Core>
 #include <memory>
@@ -31,6 +33,7 @@ class NoiseShapes {
   Eigen::Index rows() const { return rows_; }
   /// With N = 1 deg/sqrt(h). Shape 0 is white.
   const NoiseCoefficients& shape(std::size_t i) const { return shapes_[i]; }
+  double log_prior(std::size_t i) const { return log_prior_[i]; }
   std::shared_ptr<const Whitener> whitener(std::size_t i) const;
   /// Whitener of any noise on the same windows.
   std::unique_ptr<Whitener> whitener(const NoiseCoefficients& noise) const;
@@ -43,6 +46,7 @@ class NoiseShapes {
  private:
   std::shared_ptr<const WindowGeometry> geometry_;
   std::vector<NoiseCoefficients> shapes_;
+  std::vector<double> log_prior_;
   std::vector<std::shared_ptr<const Whitener>> kept_;
   Eigen::Index rows_ = 0;
   double anchor_ = 0.0;

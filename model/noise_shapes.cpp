@@ -15,6 +15,7 @@ constexpr Eigen::Index kMostRowsKept = 4000;  // the gains of 72 shapes then tak
 constexpr double kMostFlickerPerWindow = 30.0;
 constexpr double kLeastWalkPerRun = 1.0;
 constexpr double kMostWalkPerRow = 3.0;
+constexpr double kPriorPowerOfWalk = 0.5;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -61,6 +62,7 @@ Result<NoiseShapes> NoiseShapes::make(const Windows& windows) {
            .bias_instability_deg_per_h = b == 0 ? 0.0 : least_b * std::pow(out.step_of_b_, b - 1),
            .rate_random_walk_deg_per_h_per_sqrt_h =
                k == 0 ? 0.0 : least_k * std::pow(out.step_of_k_, k - 1)});
+      out.log_prior_.push_back(kPriorPowerOfWalk * std::max(k - 1, 0) * std::log(out.step_of_k_));
     }
   }
   if (out.rows_ <= kMostRowsKept) {
