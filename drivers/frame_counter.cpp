@@ -34,11 +34,10 @@ void FrameCounter::settle(std::optional<Clock::Instant> empty_at, std::int64_t p
                           std::size_t entries, GyroBlock& block, StreamStatistics& statistics) {
   if (last_index_ < 0) return;
   const std::size_t first = block.index.size() - entries;
-  const bool was_silent = silent_;
   const std::int64_t turns = empty_at ? missing_turns(*empty_at, periods_since) : 0;
   if (turns != 0) {
-    const std::size_t from = first + (was_silent && turns > 0 ? 0 : jump_entry_);
-    for (std::size_t i = from; i < block.index.size(); ++i) block.index[i] += turns * modulus_;
+    for (std::size_t i = first + jump_entry_; i < block.index.size(); ++i)
+      block.index[i] += turns * modulus_;
     last_index_ += turns * modulus_;
   }
   std::size_t repeated = 0;

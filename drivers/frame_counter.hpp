@@ -9,9 +9,9 @@
 //
 //   missing turns k = round((periods by the clock - periods counted) / modulus)
 //
-//   k > 0  whole turns were lost. The gap is put where the silence was: before the first new frame
-//          when the line had been silent, else at the largest jump. When there is none, the line
-//          has just fallen silent: nothing is missing yet, and the next frames will tell.
+//   k > 0  whole turns were lost. The gap is put at the largest jump or, when there is none, before
+//          the first frame that came after a silence. When there is neither, the line has just
+//          fallen silent: nothing is missing yet, and the next frames will tell.
 //   k < 0  frames came again that had been received before, and their first looked like a jump.
 //
 // The clock is only asked for the nearest whole turn, so its jitter and the instrument's own
@@ -34,8 +34,8 @@ class FrameCounter {
   /// `periods_skipped`: how many frames' worth of bytes were thrown away just before it.
   /// `entry`: how many entries the block has had since the last settle().
   std::int64_t advance(std::uint32_t sequence, std::int64_t periods_skipped, std::size_t entry) {
-    has_new_ = true;
     if (last_sequence_ < 0) {
+      has_new_ = true;
       last_sequence_ = sequence;
       return last_index_ = 0;
     }
@@ -46,7 +46,7 @@ class FrameCounter {
       const std::int64_t more = periods_skipped + 1 - step + modulus_ / 2;
       if (more > 0) step += more / modulus_ * modulus_;
     }
-    if (step == 0) has_repeats_ = true;
+    (step == 0 ? has_repeats_ : has_new_) = true;
     if (step - 1 - periods_skipped > jump_) {
       jump_ = step - 1 - periods_skipped;
       jump_entry_ = entry;
@@ -75,7 +75,7 @@ class FrameCounter {
   std::int64_t settled_index_ = -1;  ///< the highest at the last settle()
 
   // Since the last settle().
-  bool has_new_ = false;
+  bool has_new_ = false;  ///< frames that were no repeats
   bool has_repeats_ = false;
   std::int64_t jump_ = 0;  ///< the largest number of frames missing at once without a trace
   std::size_t jump_entry_ = 0;

@@ -134,6 +134,22 @@ TEST_F(CounterTest, FramesThatCameBeforeAreRepeatsNotAnotherTurn) {
   EXPECT_EQ(statistics_.frames_missing, 0u);
 }
 
+TEST_F(CounterTest, AStuckSequenceNumberYieldsNothingHoweverLongItLasts) {
+  receive(0, 999);
+  settle_at(1.0);
+  for (int second = 2; second <= 5; ++second) {
+    for (int i = 0; i < 1000; ++i) receive(999, 999);
+    settle_at(second);
+  }
+  for (int i = 0; i < 500; ++i) receive(999, 999);
+  receive(5500, 5999);
+  settle_at(6.0);
+  expect_aligned();
+  EXPECT_EQ(block_.index.size(), 1500u);
+  EXPECT_EQ(statistics_.frames_repeated, 4500u);
+  EXPECT_EQ(statistics_.frames_missing, 4500u);
+}
+
 TEST_F(CounterTest, JitterAndASlowOscillatorDoNotMoveTheIndex) {
   // 100 ppm slow and 30 ms late at random, for an hour: 360 periods of drift in all.
   std::mt19937_64 random(7);

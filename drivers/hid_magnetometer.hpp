@@ -1,0 +1,50 @@
+#pragma once
+// A three-axis magnetometer that sends HID input reports, laid out as its description says.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/device.hpp"
+#include "drivers/instruments.hpp"
+#include "drivers/transport.hpp"
+
+namespace fogbench::drivers {
+
+class HidMagnetometer final : public Magnetometer {
+ public:
+  /// Waits for a first report. `name` stands in front of every message; `clock` must outlive the
+  /// magnetometer. Errors: kBadInput for a layout that lacks an axis or does not fit its report.
+  static Result<std::unique_ptr<HidMagnetometer>> open(std::string name,
+                                                       const config::HidDevice& device,
+                                                       std::unique_ptr<HidTransport> transport,
+                                                       Clock& clock);
+
+  /// The description's name: the transport has already found the device by its ids.
+  Result<std::string> identity() override { return device_.name; }
+  /// The next report that was not read before; waits for it. kDevice when an axis is saturated or
+  /// the status, where there is one, is not 0; kStale when only old reports came within max_age.
+  Result<FieldReading> read() override;
+
+ private:
+  HidMagnetometer(std::string name, const config::HidDevice& device,
+                  std::unique_ptr<HidTransport> transport, Clock& clock);
+  Status check_layout();
+  /// Whether the report differs from the last one: by its sequence, else by its bytes.
+  bool is_new(const std::vector<std::uint8_t>& report) const;
+  Result<FieldReading> decode(std::span<const std::uint8_t> report) const;
+  Error error(ErrorCode code, const std::string& message) const;
+
+  std::string name_;
+  config::HidDevice device_;
+  std::unique_ptr<HidTransport> transport_;
+  Clock& clock_;
+  std::array<const config::FieldSpec*, 3> axes_{};  ///< into device_.fields
+  const config::FieldSpec* sequence_ = nullptr;
+  const config::FieldSpec* status_ = nullptr;
+  std::vector<std::uint8_t> last_;  ///< the newest report; empty before the first
+};
+
+}  // namespace fogbench::drivers

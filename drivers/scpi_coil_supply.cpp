@@ -1,0 +1,85 @@
+#include "drivers/scpi_coil_supply.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fogbench::drivers {
+
+Result<std::unique_ptr<ScpiCoilSupply>> ScpiCoilSupply::open(
+    std::string name, const config::CoilConfig& config, std::unique_ptr<MessageTransport> transport,
+    Clock& clock) {
+  auto dialogue = ScpiDialogue::open(std::move(name), config.device, std::move(transport));
+  if (!dialogue) return dialogue.error();
+  std::unique_ptr<ScpiCoilSupply> supply(new ScpiCoilSupply(std::move(*dialogue), config, clock));
+  if (const Status safe = supply->make_safe(); !safe) return safe.error();
+  return supply;
+}
+
+Status ScpiCoilSupply::program(double current_a) {
+  // Whether or not it is obeyed, the output may be changing from now on.
+  Status done = dialogue_.set(current_a);
+  valid_from_ = clock_.now() + from_seconds(config_.device.settle.count());
+  return done;
+}
+
+Result<double> ScpiCoilSupply::measure() {
+  clock_.sleep_until(valid_from_);
+  return dialogue_.query_number(config_.device.measure_query);
+}
+
+Status ScpiCoilSupply::verify(double set_a) {
+  const auto measured = measure();
+  if (!measured) return measured.error();
+  if (std::abs(*measured - set_a) <= config_.device.read_back_tolerance) return {};
+  return dialogue_.error(
+      ErrorCode::kDevice,
+      fmt::format("was set to {:.6f} A but measures {:.6f} A, more than {} A apart", set_a,
+                  *measured, config_.device.read_back_tolerance));
+}
+
+Status ScpiCoilSupply::enable() {
+  if (Status zero = program(0.0); !zero) return zero;
+  if (!config_.device.output_on.empty()) {
+    if (Status on = dialogue_.command(config_.device.output_on); !on) return on;
+    valid_from_ = clock_.now() + from_seconds(config_.device.settle.count());
+  }
+  return verify(0.0);
+}
+
+Status ScpiCoilSupply::set_current(Ampere current) {
+  const double limit = config_.current_limit.value;
+  const double lowest = std::max(-limit, config_.device.minimum);
+  const double highest = std::min(limit, config_.device.maximum);
+  if (!(current.value >= lowest && current.value <= highest)) {
+    return dialogue_.error(ErrorCode::kLimit, fmt::format("current {} A is outside {} ... {} A",
+                                                          current.value, lowest, highest));
+  }
+  const double step = config_.device.resolution;
+  const double rounded = step > 0 ? std::round(current.value / step) * step : current.value;
+  const double set_a = std::clamp(rounded, lowest, highest);
+  if (Status done = program(set_a); !done) return done;
+  return verify(set_a);
+}
+
+Result<CoilReading> ScpiCoilSupply::read() {
+  const auto measured = measure();
+  if (!measured) return measured.error();
+  const auto set = dialogue_.query_number(config_.device.set_query);
+  if (!set) return set.error();
+  return CoilReading{.taken_at = clock_.now(), .set = Ampere{*set}, .measured = Ampere{*measured}};
+}
+
+Status ScpiCoilSupply::make_safe() {
+  Status first_failure = program(0.0);
+  const Status zero = verify(0.0);
+  if (first_failure) first_failure = zero;
+  if (!config_.device.output_off.empty()) {
+    const Status off = dialogue_.command(config_.device.output_off);
+    if (first_failure) first_failure = off;
+  }
+  return first_failure;
+}
+
+}  // namespace fogbench::drivers

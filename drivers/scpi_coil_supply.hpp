@@ -1,0 +1,45 @@
+#pragma once
+// One pair of coils' bipolar current source, spoken to in SCPI.
+
+#include <memory>
+#include <string>
+
+#include "config/bench.hpp"
+#include "drivers/instruments.hpp"
+#include "drivers/scpi_dialogue.hpp"
+
+namespace fogbench::drivers {
+
+class ScpiCoilSupply final : public CoilSupply {
+ public:
+  /// Leaves it at 0 A with the output off. `name` stands in front of every message; `clock` must
+  /// outlive the supply. Errors: kBadInput, as of the dialogue; else as the instrument's.
+  static Result<std::unique_ptr<ScpiCoilSupply>> open(std::string name,
+                                                      const config::CoilConfig& config,
+                                                      std::unique_ptr<MessageTransport> transport,
+                                                      Clock& clock);
+
+  Result<std::string> identity() override { return dialogue_.identity(); }
+  Status enable() override;
+  /// The current is rounded to the output's resolution first.
+  Status set_current(Ampere current) override;
+  /// Waits until the read-back, which is a mean, has left the last change behind.
+  Result<CoilReading> read() override;
+  /// Tries everything whatever fails on the way; the error is the first one.
+  Status make_safe() override;
+
+ private:
+  ScpiCoilSupply(ScpiDialogue dialogue, const config::CoilConfig& config, Clock& clock)
+      : dialogue_(std::move(dialogue)), config_(config), clock_(clock), valid_from_(clock.now()) {}
+  Status program(double current_a);
+  Result<double> measure();
+  /// kDevice when the output is not where it was set.
+  Status verify(double set_a);
+
+  ScpiDialogue dialogue_;
+  config::CoilConfig config_;
+  Clock& clock_;
+  Clock::Instant valid_from_;  ///< before it the read-back still has the last change in it
+};
+
+}  // namespace fogbench::drivers

@@ -1,0 +1,165 @@
+#include "drivers/scpi_dialogue.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "drivers/named_error.hpp"
+
+namespace fogbench::drivers {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Clock::Duration kAnswerTimeout = 1s;
+constexpr int kAttempts = 2;
+/// Queues hold 10 to 30 entries; one that does not end is broken.
+constexpr int kMostErrors = 64;
+/// SCPI-99, 7.2.1.4 and 5: an instrument's words for infinity and not-a-number.
+constexpr double kInfinity = 9.9e37;
+
+bool is_self_test(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text.find("*TST") != std::string::npos;
+}
+
+/// A number as SCPI writes it ("+1.5", " -1.112E+00"); none when anything else is there.
+std::optional<double> parse_number(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// An instrument's words on one line, without control characters and of bearable length.
+std::string printable(std::string_view text) {
+  constexpr std::size_t kMost = 80;
+  std::string result(text.substr(0, kMost));
+  std::replace_if(
+      result.begin(), result.end(), [](unsigned char c) { return c < 0x20 || c > 0x7e; }, '?');
+  return result;
+}
+
+}  // namespace
+
+ScpiDialogue::ScpiDialogue(std::string name, const config::ScpiDevice& device,
+                           std::unique_ptr<MessageTransport> transport)
+    : name_(std::move(name)),
+      set_(device.set),
+      error_query_(device.error_query),
+      transport_(std::move(transport)) {}
+
+Error ScpiDialogue::error(ErrorCode code, const std::string& message) const {
+  return {code, name_ + ": " + message};
+}
+
+Result<ScpiDialogue> ScpiDialogue::open(std::string name, const config::ScpiDevice& device,
+                                        std::unique_ptr<MessageTransport> transport) {
+  ScpiDialogue dialogue(std::move(name), device, std::move(transport));
+  std::vector<std::string> all = device.initialise;
+  for (const auto* text : {&device.set, &device.set_query, &device.measure_query, &device.output_on,
+                           &device.output_off, &device.error_query}) {
+    all.push_back(*text);
+  }
+  if (const auto test = std::find_if(all.begin(), all.end(), is_self_test); test != all.end()) {
+    return dialogue.error(ErrorCode::kBadInput,
+                          fmt::format("{} would send {}: the self test swings the output to its "
+                                      "maximum and is never sent",
+                                      device.name, *test));
+  }
+  if (const Status cleared = dialogue.transport_->clear(); !cleared) {
+    return named(dialogue.name_, cleared.error());
+  }
+  auto identity = dialogue.query("*IDN?");
+  if (!identity) return identity.error();
+  if (identity->find(device.identity) == std::string::npos) {
+    return dialogue.error(ErrorCode::kDevice, fmt::format("says that it is {}, expected {}",
+                                                          printable(*identity), device.identity));
+  }
+  dialogue.identity_ = printable(*identity);
+  if (const auto old = dialogue.drain_errors(); !old) return old.error();
+  for (const std::string& text : device.initialise) {
+    if (const Status done = dialogue.command(text); !done) return done.error();
+  }
+  return dialogue;
+}
+
+Result<std::string> ScpiDialogue::query(const std::string& question) {
+  std::optional<Error> failure;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (const Status sent = transport_->write(question); !sent) {
+      failure = sent.error();
+    } else {
+      auto answer = transport_->read(kAnswerTimeout);
+      if (answer) return answer;
+      failure = answer.error();
+    }
+    if (failure->code != ErrorCode::kTimeout) break;
+    // Nothing half-said may be left on either side before the question is put again.
+    if (const Status cleared = transport_->clear(); !cleared) break;
+  }
+  return error(failure->code, fmt::format("{}: {}", question, failure->message));
+}
+
+Result<double> ScpiDialogue::query_number(const std::string& question) {
+  const auto answer = query(question);
+  if (!answer) return answer.error();
+  const auto value = parse_number(*answer);
+  if (!value || !(std::abs(*value) < kInfinity)) {
+    return error(ErrorCode::kProtocol,
+                 fmt::format("{} answers \"{}\", expected a number", question, printable(*answer)));
+  }
+  return *value;
+}
+
+Status ScpiDialogue::command(const std::string& text) {
+  if (const Status sent = transport_->write(text); !sent) {
+    return error(sent.error().code, fmt::format("{}: {}", text, sent.error().message));
+  }
+  const auto errors = drain_errors();
+  if (!errors) return errors.error();
+  if (errors->empty()) return {};
+  return error(ErrorCode::kDevice, fmt::format("{} was refused: {}", text, *errors));
+}
+
+Status ScpiDialogue::set(double value) {
+  constexpr std::string_view kPlace = "{value}";
+  std::string text = set_;
+  const std::size_t place = text.find(kPlace);
+  if (place == std::string::npos) {
+    return error(ErrorCode::kBadInput, fmt::format("\"{}\" has no {} in it", set_, kPlace));
+  }
+  // Micro-units; never an exponent, which some firmware does not read.
+  return command(text.replace(place, kPlace.size(), fmt::format("{:.6f}", value)));
+}
+
+Result<std::string> ScpiDialogue::drain_errors() {
+  std::string all;
+  for (int i = 0; i < kMostErrors; ++i) {
+    const auto entry = query(error_query_);
+    if (!entry) return entry.error();
+    const auto code = parse_number(std::string_view(*entry).substr(0, entry->find(',')));
+    if (!code) {
+      return error(ErrorCode::kProtocol,
+                   fmt::format("{} answers \"{}\", expected a number and text", error_query_,
+                               printable(*entry)));
+    }
+    if (*code == 0) return all;
+    all += (all.empty() ? "" : "; ") + printable(*entry);
+  }
+  return error(ErrorCode::kProtocol,
+               fmt::format("its error queue does not end after {} entries: {}", kMostErrors,
+                           printable(all)));
+}
+
+}  // namespace fogbench::drivers

@@ -1,0 +1,52 @@
+#pragma once
+// What all SCPI instruments have in common: questions, commands, and the error queue, which is
+// emptied after every command so that a refusal is never found later under another command's name.
+//
+// The self test (*TST?) is never sent: it swings a supply's output to its maximum, and that
+// magnetises the gyro's shield.
+
+#include <memory>
+#include <string>
+
+#include "config/device.hpp"
+#include "drivers/clock.hpp"
+#include "drivers/transport.hpp"
+
+namespace fogbench::drivers {
+
+class ScpiDialogue {
+ public:
+  /// Clears the line, checks the identity, empties the queue of old errors and sends the
+  /// initialisation. `name` stands in front of every message. Errors: kBadInput for a description
+  /// that would send a self test, kDevice for another instrument than described; else as below.
+  static Result<ScpiDialogue> open(std::string name, const config::ScpiDevice& device,
+                                   std::unique_ptr<MessageTransport> transport);
+
+  const std::string& name() const { return name_; }
+  const std::string& identity() const { return identity_; }
+
+  /// Asks again once when no answer came: a question changes nothing.
+  Result<std::string> query(const std::string& question);
+  /// kProtocol when the answer is no finite number.
+  Result<double> query_number(const std::string& question);
+  /// Sends it once, then empties the error queue. kDevice with every entry that was in it.
+  Status command(const std::string& text);
+  /// The description's `set` with {value} replaced.
+  Status set(double value);
+
+  Error error(ErrorCode code, const std::string& message) const;
+
+ private:
+  ScpiDialogue(std::string name, const config::ScpiDevice& device,
+               std::unique_ptr<MessageTransport> transport);
+  /// All entries, joined; empty when there were none.
+  Result<std::string> drain_errors();
+
+  std::string name_;
+  std::string identity_;
+  std::string set_;
+  std::string error_query_;
+  std::unique_ptr<MessageTransport> transport_;
+};
+
+}  // namespace fogbench::drivers
