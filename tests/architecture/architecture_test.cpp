@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "tests/architecture/rules.hpp"
 
 namespace fogbench::tests {
@@ -58,6 +61,12 @@ TEST(Architecture, NoFileIsTooLongToRead) {
 
 TEST(Architecture, NothingIsPutOffOrSwitchedOff) {
   EXPECT_THAT(unfinished_work(tree()), IsEmpty());
+}
+
+TEST(Architecture, DocumentsNameOnlyWhatExists) {
+  const std::filesystem::path root = FOGBENCH_SOURCE_DIR;
+  const auto exists = [&](const std::string& path) { return std::filesystem::exists(root / path); };
+  EXPECT_THAT(dead_references(tree(), exists), IsEmpty());
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <regex>
 
 namespace fogbench::tests {
@@ -176,6 +175,26 @@ Violations unfinished_work(const Tree& tree) {
   return matches(
       tree, [](const SourceFile&) { return true; }, &SourceFile::text, kPattern,
       "finish it, or leave it out");
+}
+
+Violations dead_references(const Tree& tree,
+                           const std::function<bool(const std::string&)>& exists) {
+  // `model/effects/` or `config/units.hpp`; not `config/devices/NAME.json`, nor a segment such as
+  // `coil_z/down`, whose first part is no folder of ours.
+  static const std::regex kPath("`([a-z_]+/[a-z0-9_./-]*)`");
+  Violations found;
+  for (const SourceFile& file : tree) {
+    if (!file.path.ends_with(".md")) continue;
+    for (std::sregex_iterator it(file.text.begin(), file.text.end(), kPath), end; it != end; ++it) {
+      const std::string path = (*it)[1];
+      const std::string folder = path.substr(0, path.find('/'));
+      const bool ours = is_room(folder) || folder == "tests" || folder == "scripts";
+      if (ours && !exists(path)) {
+        found.push_back(fmt::format("{} names `{}`, which does not exist", file.path, path));
+      }
+    }
+  }
+  return found;
 }
 
 }  // namespace fogbench::tests

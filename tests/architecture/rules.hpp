@@ -1,6 +1,7 @@
 #pragma once
 // The rules of the house, each a function from the tree to the sentences that say who broke it.
 
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -45,5 +46,7 @@ Violations thrown_exceptions(const Tree& tree);
 Violations long_files(const Tree& tree);
 /// Nothing is put off, and no test is switched off.
 Violations unfinished_work(const Tree& tree);
+/// Every file or folder of the repository that a document names in backticks exists.
+Violations dead_references(const Tree& tree, const std::function<bool(const std::string&)>& exists);
 
 }  // namespace fogbench::tests

@@ -127,6 +127,14 @@ TEST(UnfinishedWork, FindsNotesAndSwitchedOffTests) {
               ElementsAre(HasSubstr("cli/a.cpp:1"), HasSubstr(disabled), HasSubstr(skip)));
 }
 
+TEST(DeadReferences, FindsAPathThatWentAway) {
+  const Tree tree{file("README.md",
+                       "see `config/units.hpp`, `model/gone.hpp`, `coil_z/down`, "
+                       "`config/models/NAME.json` and `fogbench fit`")};
+  const auto exists = [](const std::string& path) { return path == "config/units.hpp"; };
+  EXPECT_THAT(dead_references(tree, exists), ElementsAre(HasSubstr("`model/gone.hpp`")));
+}
+
 TEST(BlankComments, KeepsLinesAndKnowsLiterals) {
   EXPECT_EQ(blank_comments("a /* b\nc */ d // e\nf", false), "a     \n     d     \nf");
   EXPECT_EQ(blank_comments("x(\"// no comment\"); y", false), "x(               ); y");
