@@ -89,8 +89,8 @@ struct ThermalPlant {
   Watt normal_maximum{9.0};
   Celsius boost_drop_out{2.0};  ///< boost heaters switch off this far below the target
   Seconds dead_time{10.0};
-  double pid_gain_w_per_k = 3.0;
-  Seconds pid_integral{300.0};
+  double pid_gain_w_per_k = 10.0;
+  Seconds pid_integral{400.0};
   Seconds pid_derivative{20.0};
   Celsius sensor_noise{0.002};
   Celsius sensor_resolution{0.001};

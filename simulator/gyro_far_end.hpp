@@ -1,0 +1,68 @@
+#pragma once
+// The gyro at its serial line: frames at the frame rate, laid out as the instrument's description
+// says, with sequence and check value. Frame i is the mean over its own sample,
+//
+//   rate = Earth's rate on the axis + effects (of the plant's step) + noise (bin mean),
+//
+// quantised, and goes out when the sample ends. Bytes come into being when they are read, up to the
+// clock's present; nothing is stored but the frame that a read stopped in. Frames older than
+// Plant::kKeptS that nobody read are lost, as in a receive buffer that runs over.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "config/device.hpp"
+#include "drivers/crc.hpp"
+#include "drivers/transport.hpp"
+#include "simulator/fault_schedule.hpp"
+#include "simulator/noise_generator.hpp"
+#include "simulator/plant.hpp"
+
+namespace fogbench::simulator {
+
+class GyroFarEnd final : public drivers::SerialTransport {
+ public:
+  static constexpr std::initializer_list<FaultKind> kFaults = {
+      FaultKind::kTimeout, FaultKind::kUnplug, FaultKind::kBadChecksum, FaultKind::kBadSequence,
+      FaultKind::kGarbage, FaultKind::kNan,    FaultKind::kStuck};
+
+  GyroFarEnd(const config::FrameDevice& device, const config::NoiseCoefficients& noise,
+             std::shared_ptr<Plant> plant, FaultSchedule faults, std::uint64_t seed);
+
+  Result<std::size_t> read_some(std::span<std::byte> out) override;
+  /// Takes every command and does nothing.
+  Status write(std::span<const std::byte> bytes) override;
+
+ private:
+  /// Frames complete by now.
+  std::int64_t complete_frames() const;
+  /// Draws frame next_ and writes it to `out`; false when a fault keeps it off the line.
+  bool make_frame(std::uint8_t* out);
+  bool spoil(std::uint8_t* frame, double time_s);
+  void enter_step(std::int64_t step);
+  void skip_lost();
+
+  const config::FrameDevice device_;
+  const std::size_t frame_bytes_;
+  const double frame_s_;
+  std::shared_ptr<Plant> plant_;  // Shared with the other far ends.
+  FaultSchedule faults_;
+  NoiseGenerator noise_;
+  AngleQuantiser quantiser_;
+  drivers::Crc crc_;
+  RandomEngine garbage_;
+  std::vector<std::uint8_t> template_;  ///< header, status and the constant fields
+  std::int64_t next_ = 0;               ///< the frame to be made
+  std::uint32_t sequence_ = 0;
+  double step_rate_deg_per_h_ = 0.0;
+  std::int64_t step_end_ = 0;          ///< first frame beyond the present step
+  std::vector<std::uint8_t> partial_;  ///< a frame that a read stopped in
+  std::size_t partial_sent_ = 0;
+  std::vector<std::uint8_t> last_rate_;  ///< as it last went out, for a stuck gyro
+  std::uint8_t last_sequence_ = 0;       ///< likewise, for one that repeats
+};
+
+}  // namespace fogbench::simulator

@@ -1,0 +1,33 @@
+#include "simulator/instrument_line.hpp"
+
+#include <algorithm>
+
+namespace fogbench::simulator {
+
+Status InstrumentLine::request(drivers::Clock::Duration takes, drivers::Clock::Duration timeout) {
+  if (fault(FaultKind::kUnplug)) return error(ErrorCode::kDevice, "unplugged");
+  if (fault(FaultKind::kTimeout)) return wait_in_vain(timeout);
+  constexpr int kSlowFactor = 20;
+  if (fault(FaultKind::kSlowAnswer)) takes = std::min(kSlowFactor * takes, timeout * 9 / 10);
+  clock_.sleep_for(takes);
+  plant_->advance();
+  return {};
+}
+
+Status InstrumentLine::answer(drivers::Clock::Duration timeout) {
+  if (fault(FaultKind::kLateAnswer) || fault(FaultKind::kSilentExecution)) {
+    return wait_in_vain(timeout);
+  }
+  if (fault(FaultKind::kBadChecksum)) {
+    return error(ErrorCode::kProtocol, "the answer's check value is wrong");
+  }
+  return {};
+}
+
+Status InstrumentLine::wait_in_vain(drivers::Clock::Duration timeout) {
+  clock_.sleep_for(timeout);
+  plant_->advance();
+  return error(ErrorCode::kTimeout, "no answer");
+}
+
+}  // namespace fogbench::simulator

@@ -1,0 +1,56 @@
+#pragma once
+// The line to a request-and-answer instrument: what a transaction costs in time, and the faults
+// that are the line's rather than the instrument's.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "config/result.hpp"
+#include "drivers/clock.hpp"
+#include "simulator/fault_schedule.hpp"
+#include "simulator/plant.hpp"
+#include "simulator/random.hpp"
+
+namespace fogbench::simulator {
+
+class InstrumentLine {
+ public:
+  InstrumentLine(std::string name, std::shared_ptr<Plant> plant, drivers::Clock& clock,
+                 FaultSchedule faults, std::uint64_t seed)
+      : name_(std::move(name)),
+        plant_(std::move(plant)),
+        clock_(clock),
+        faults_(std::move(faults)),
+        random_(seed) {}
+
+  /// The request travels for `takes` (twenty times as long while slow, but not past `timeout`).
+  /// On success the instrument executes it, on the plant of that moment. kDevice while unplugged,
+  /// kTimeout after `timeout` while the instrument hears nothing.
+  Status request(drivers::Clock::Duration takes, drivers::Clock::Duration timeout);
+  /// The answer travels back: kTimeout after the rest of `timeout` while answers are late or lost,
+  /// kProtocol while they arrive broken.
+  Status answer(drivers::Clock::Duration timeout);
+
+  bool fault(FaultKind kind) const { return faults_.active(kind, plant_->now_s()); }
+  Plant& plant() { return *plant_; }
+  const Plant& plant() const { return *plant_; }
+  drivers::Clock& clock() { return clock_; }
+  const std::string& name() const { return name_; }
+  RandomEngine& random() { return random_; }
+
+  Error error(ErrorCode code, const std::string& what) const {
+    return Error{code, name_ + ": " + what};
+  }
+
+ private:
+  Status wait_in_vain(drivers::Clock::Duration timeout);
+
+  std::string name_;
+  std::shared_ptr<Plant> plant_;  // Shared: the last far end to go takes the plant with it.
+  drivers::Clock& clock_;
+  FaultSchedule faults_;
+  RandomEngine random_;  ///< of garbage only
+};
+
+}  // namespace fogbench::simulator

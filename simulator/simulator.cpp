@@ -1,1 +1,0 @@
-// Placeholder unit so that the library exists until its first source lands.
