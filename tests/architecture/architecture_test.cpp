@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "tests/architecture/rules.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace fogbench::tests {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using ::testing::IsEmpty;
 
 const Tree& tree() {
-  static const Tree kTree = read_tree(FOGBENCH_SOURCE_DIR);
+  static const Tree kTree = read_tree(tests::source_tree());
   return kTree;
 }
 
@@ -64,7 +65,7 @@ TEST(Architecture, NothingIsPutOffOrSwitchedOff) {
 }
 
 TEST(Architecture, DocumentsNameOnlyWhatExists) {
-  const std::filesystem::path root = FOGBENCH_SOURCE_DIR;
+  const std::filesystem::path root = source_tree();
   const auto exists = [&](const std::string& path) { return std::filesystem::exists(root / path); };
   EXPECT_THAT(dead_references(tree(), exists), IsEmpty());
 }

@@ -7,13 +7,14 @@
 
 #include "config/bench.hpp"
 #include "config/scenario.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace fogbench::config {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kConfig = fs::path(FOGBENCH_SOURCE_DIR) / "config";
+const fs::path kConfig = tests::source_tree() / "config";
 
 template <class Load>
 void expect_all_are_read(const std::string& kind, Load load) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -114,7 +115,7 @@ TEST(Store, IsDocumentedColumnByColumn) {
   const support::TemporaryFolder folder;
   const auto store = open_store_for_writing(folder / "store.db");
   ASSERT_TRUE(store);
-  const std::string document = read_text(FOGBENCH_SOURCE_DIR "/daemon/run-log.md");
+  const std::string document = read_text(tests::source_tree() / "daemon/run-log.md");
   auto columns = (*store)->prepare(
       "SELECT m.name, c.name FROM sqlite_schema m JOIN pragma_table_info(m.name) c "
       "WHERE m.type = 'table' AND m.name NOT LIKE 'sqlite%'");
