@@ -10,12 +10,13 @@
 //                       ▼
 //            kCompleted | kAborted | kFailed
 //
-// The states and events are a transition table in run_engine.cpp; an event that the table does not
+// The states and events are a transition table in run_state.cpp; an event that the table does not
 // list for a state is refused.
 
 #include <atomic>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/bench.hpp"
@@ -42,29 +43,37 @@ struct Progress {
 struct RunSummary {
   std::int64_t run = 0;
   RunEnd end;
-  std::size_t points = 0;
+  std::size_t points = 0;  ///< recorded, without those of abandoned blocks
 };
 
 class RunEngine {
  public:
   /// All must outlive the engine. `clock` is the one the bench was opened with.
   RunEngine(const config::BenchConfig& config, drivers::Bench& bench, drivers::Clock& clock,
-            drivers::Operator& operator_, Recorder& recorder);
+            drivers::Operator& person, Recorder& recorder);
 
-  void on_progress(std::function<void(const Progress&)> observer);
-  void on_point(std::function<void(const Point&)> observer);  ///< after it is on disk
+  /// Observers are called on the thread of run(), about once a second; they must not call run().
+  void on_progress(std::function<void(const Progress&)> observer) {
+    progress_ = std::move(observer);
+  }
+  /// Called when the point is on disk, never before.
+  void on_point(std::function<void(const Point&)> observer) { point_ = std::move(observer); }
 
   /// Ends in the safe state whatever happens. An error is returned only when the run could not
-  /// be recorded or begun; a failed or aborted run is a RunSummary that says so.
+  /// be recorded (kStore, the bench is made safe all the same) or begun (nothing was commanded); a
+  /// failed or aborted run is a RunSummary that says so. An engine may run again after an end.
   Result<RunSummary> run(const Plan& plan, const RunHeader& header);
 
-  // Thread- and signal-safe requests; take effect at the next tick (abort) or the next divisible
-  // place (pause).
+  // Thread- and signal-safe requests; take effect at the next tick (abort) or before the next step
+  // outside an indivisible block (pause). An abort asked for before run() holds for it.
   void request_abort() { abort_requested_ = true; }
   void request_pause() { pause_requested_ = true; }
   void request_resume() { pause_requested_ = false; }
 
  private:
+  class Run;
+  Result<std::vector<InstrumentRecord>> identify_instruments();
+
   const config::BenchConfig& config_;
   drivers::Bench& bench_;
   drivers::Clock& clock_;
@@ -72,6 +81,7 @@ class RunEngine {
   Recorder& recorder_;
   std::function<void(const Progress&)> progress_;
   std::function<void(const Point&)> point_;
+  RunState state_ = RunState::kIdle;
   std::atomic<bool> abort_requested_{false};
   std::atomic<bool> pause_requested_{false};
 };

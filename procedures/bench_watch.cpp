@@ -1,0 +1,148 @@
+#include "procedures/bench_watch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fogbench::procedures {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+drivers::ThermostatReading missing_thermostat() {
+  drivers::ThermostatReading r;
+  r.working_1 = r.working_2 = r.control = r.ambient = r.target = config::Celsius{kMissing};
+  r.boost_power = r.normal_power = config::Watt{kMissing};
+  return r;
+}
+
+drivers::FieldReading missing_field() {
+  drivers::FieldReading r;
+  r.field.fill(config::Microtesla{kMissing});
+  return r;
+}
+
+}  // namespace
+
+Status BenchWatch::start() {
+  const Instant begun = clock_.now();
+  power_on_ = begun;
+  next_reading_ = begun;
+  const auto patience =
+      drivers::from_seconds(std::max(kLongestOutage.count(), 3.0 / bench_.gyro->frame_rate_hz()));
+  for (;;) {
+    const auto drained = drain();
+    if (!drained) return drained;
+    if (!frames_.index.empty()) break;
+    if (clock_.now() - begun > patience) {
+      return Error{ErrorCode::kTimeout,
+                   fmt::format("gyro: no frame within {} s", drivers::to_seconds(patience))};
+    }
+    clock_.sleep_for(std::chrono::milliseconds{10});
+  }
+  power_on_ = bench_.gyro->time_of(0);
+  return {};
+}
+
+Status BenchWatch::tick(Instant deadline) {
+  clock_.sleep_until(std::min(deadline, next_reading_));
+  has_new_row_ = false;
+  const auto drained = drain();
+  if (!drained) return drained;
+  const Instant now = clock_.now();
+  if (now < next_reading_) return {};
+  next_reading_ = std::max(next_reading_ + kPeriod, now);
+  const auto read = read_slow_instruments();
+  if (!read) return read;
+  return check_temperature();
+}
+
+Status BenchWatch::drain() {
+  frames_.clear();
+  Status outcome = bench_.gyro->read(frames_);
+  if (!frames_.index.empty()) {
+    next_frame_ = frames_.index.back() + 1;
+    gyro_.last_taken = clock_.now();
+    const auto recorded = recorder_.gyro_samples(frames_);
+    if (!recorded) return recorded;
+  }
+  return note(gyro_, outcome);
+}
+
+Status BenchWatch::read_slow_instruments() {
+  row_.time_s = now_s();
+  row_.azimuth_deg = azimuth_.value;
+
+  const auto thermostat = bench_.thermostat->read();
+  Status outcome = thermostat ? check_new(thermostat_, thermostat->taken_at) : thermostat.error();
+  row_.thermostat = outcome ? *thermostat : missing_thermostat();
+  if (auto noted = note(thermostat_, outcome); !noted) return noted;
+
+  const auto field = bench_.magnetometer->read();
+  outcome = field ? check_new(magnetometer_, field->taken_at) : field.error();
+  row_.field = outcome ? *field : missing_field();
+  if (auto noted = note(magnetometer_, outcome); !noted) return noted;
+
+  const auto read_coil = [&](drivers::CoilSupply& coil, Outage& outage, double& current_a) {
+    const auto reading = coil.read();
+    const Status result = reading ? check_new(outage, reading->taken_at) : reading.error();
+    current_a = result ? reading->measured.value : kMissing;
+    return note(outage, result);
+  };
+  auto noted = read_coil(*bench_.coil_horizontal, coil_horizontal_, row_.current_horizontal_a);
+  if (!noted) return noted;
+  noted = read_coil(*bench_.coil_vertical, coil_vertical_, row_.current_vertical_a);
+  if (!noted) return noted;
+
+  has_new_row_ = true;
+  return recorder_.monitor(row_);
+}
+
+Status BenchWatch::check_new(Outage& outage, Instant taken_at) {
+  if (taken_at <= outage.last_taken) {
+    return Error{ErrorCode::kStale, "the same reading came again"};
+  }
+  outage.last_taken = taken_at;
+  return {};
+}
+
+Status BenchWatch::note(Outage& outage, const Status& outcome) {
+  const Instant now = clock_.now();
+  if (outcome) {
+    if (!outage.since) return {};
+    const double lasted_s = drivers::to_seconds(now - *outage.since);
+    outage.since.reset();
+    return event("info",
+                 fmt::format("{}: answers again after {:.1f} s", outage.instrument, lasted_s));
+  }
+  const std::string& fault = outcome.error().message;
+  if (!outage.since) {
+    outage.since = now;
+    return event("warning", fmt::format("{}: {}; its readings are missing until it answers",
+                                        outage.instrument, fault));
+  }
+  if (now - *outage.since <= drivers::from_seconds(kLongestOutage.count())) return {};
+  return Error{outcome.error().code, fmt::format("{}: no reading for {} s: {}", outage.instrument,
+                                                 kLongestOutage.count(), fault)};
+}
+
+Status BenchWatch::check_temperature() const {
+  const config::Celsius limit = config_.limits.temperature_maximum + kOvershoot;
+  for (const config::Celsius t : {row_.thermostat.working_1, row_.thermostat.working_2}) {
+    if (t > limit) {
+      return Error{ErrorCode::kLimit,
+                   fmt::format("thermostat: {:.2f} degC, the bench's limit is {} degC", t.value,
+                               config_.limits.temperature_maximum.value)};
+    }
+  }
+  return {};
+}
+
+Status BenchWatch::event(const std::string& severity, const std::string& message,
+                         const std::string& data_json) {
+  return recorder_.event(now_s(), severity, message, data_json);
+}
+
+}  // namespace fogbench::procedures

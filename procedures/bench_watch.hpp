@@ -1,0 +1,87 @@
+#pragma once
+// Keeps watch over the bench while a step waits: drains the gyro's stream, reads the slow
+// instruments once a second, and hands everything to the recorder.
+//
+// A read that fails is harmless: it is warned of once, the value is missing, and the next second
+// tries again. An instrument that stays silent for longer than kLongestOutage ends the run; so does
+// a temperature beyond the bench's limit. A reading that repeats an old time stamp is stale and
+// counts as failed: it never enters an average.
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "config/bench.hpp"
+#include "drivers/clock.hpp"
+#include "drivers/instruments.hpp"
+#include "procedures/recorder.hpp"
+
+namespace fogbench::procedures {
+
+class BenchWatch {
+ public:
+  using Instant = drivers::Clock::Instant;
+  static constexpr drivers::Clock::Duration kPeriod = std::chrono::seconds{1};
+  /// Longer than an instrument's restart, shorter than anything thermal.
+  static constexpr config::Seconds kLongestOutage{30.0};
+  /// How far above its limit a temperature may overshoot.
+  static constexpr config::Celsius kOvershoot{2.0};
+
+  /// All must outlive the watch.
+  BenchWatch(const config::BenchConfig& config, drivers::Bench& bench, drivers::Clock& clock,
+             Recorder& recorder)
+      : config_(config), bench_(bench), clock_(clock), recorder_(recorder) {}
+
+  /// Waits for the stream's first frame, which is the zero of time: the gyro's power-on as far as
+  /// the bench can tell. kTimeout when none comes.
+  Status start();
+
+  /// Sleeps until `deadline` or the next second, whichever is first, then drains the stream, and on
+  /// the second reads the slow instruments. Errors: kStore from the recorder, kTimeout for an
+  /// outage, kLimit for a temperature.
+  Status tick(Instant deadline);
+  /// What the last tick brought.
+  const drivers::GyroBlock& frames() const { return frames_; }
+  /// Null when the last tick read no slow instruments.
+  const MonitorRow* new_row() const { return has_new_row_ ? &row_ : nullptr; }
+
+  /// The first frame that has not come yet.
+  std::int64_t next_frame() const { return next_frame_; }
+  Instant power_on() const { return power_on_; }
+  Instant now() const { return clock_.now(); }
+  double time_s(Instant instant) const { return drivers::to_seconds(instant - power_on_); }
+  double now_s() const { return time_s(now()); }
+
+  void set_azimuth(config::Degree azimuth) { azimuth_ = azimuth; }
+  Status event(const std::string& severity, const std::string& message,
+               const std::string& data_json = {});
+
+ private:
+  struct Outage {
+    const char* instrument;
+    std::optional<Instant> since;
+    Instant last_taken{Instant::min()};
+  };
+  Status drain();
+  Status read_slow_instruments();
+  /// Keeps count of the outage; an error when it has lasted too long or cannot be recorded.
+  Status note(Outage& outage, const Status& outcome);
+  static Status check_new(Outage& outage, Instant taken_at);
+  Status check_temperature() const;
+
+  const config::BenchConfig& config_;
+  drivers::Bench& bench_;
+  drivers::Clock& clock_;
+  Recorder& recorder_;
+  drivers::GyroBlock frames_;
+  MonitorRow row_;
+  bool has_new_row_ = false;
+  std::int64_t next_frame_ = 0;
+  Instant power_on_{};
+  Instant next_reading_{};
+  config::Degree azimuth_{0.0};
+  Outage gyro_{"gyro", {}}, thermostat_{"thermostat", {}}, magnetometer_{"magnetometer", {}},
+      coil_horizontal_{"coil_horizontal", {}}, coil_vertical_{"coil_vertical", {}};
+};
+
+}  // namespace fogbench::procedures

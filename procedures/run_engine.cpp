@@ -1,0 +1,261 @@
+#include "procedures/run_engine.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cassert>
+
+#include "procedures/bench_watch.hpp"
+#include "procedures/estimate.hpp"
+#include "procedures/remaining_time.hpp"
+#include "procedures/run_session.hpp"
+#include "procedures/run_state.hpp"
+
+namespace fogbench::procedures {
+
+using drivers::to_seconds;
+
+/// One run: goes through the plan's steps until the end or the first error.
+class RunEngine::Run {
+ public:
+  /// An indivisible block is begun at most this often.
+  static constexpr int kBlockTries = 3;
+
+  Run(RunEngine& engine, const Plan& plan)
+      : engine_(engine),
+        plan_(plan),
+        watch_(engine.config_, engine.bench_, engine.clock_, engine.recorder_),
+        session_(
+            engine.config_, engine.bench_, engine.operator_, watch_,
+            [this] { return after_tick(); }, [this](const Point& point) { return record(point); }),
+        remaining_(plan),
+        started_(engine.clock_.now()),
+        step_started_(started_) {}
+
+  /// The error is the reason why the run ended early.
+  Status execute();
+  /// The safe state and the end of the record. `outcome` is that of execute().
+  Result<RunEnd> finish(const Status& outcome);
+  std::size_t points() const { return points_; }
+
+ private:
+  Result<StepResult> run_step(std::size_t index);
+  Status pause_if_asked();
+  /// Back to the block's first step, or an error when it has been tried often enough.
+  Status restart_block(const std::string& reason);
+  Status after_tick();
+  Status record(const Point& point);
+  void enter(RunEvent event);
+  void report(const std::string& says) const;
+
+  RunEngine& engine_;
+  const Plan& plan_;
+  BenchWatch watch_;
+  RunSession session_;
+  RemainingTime remaining_;
+  drivers::Clock::Instant started_, step_started_;
+  std::size_t step_ = 0;
+  std::string says_;
+  int block_ = 0, block_tries_ = 0;
+  std::size_t points_ = 0, block_points_ = 0;
+};
+
+Status RunEngine::Run::execute() {
+  const auto started = session_.start();
+  if (!started) return started;
+  while (step_ < plan_.steps.size()) {
+    const int block = plan_.steps[step_].block;
+    if (block == 0 || block != block_) {
+      const auto paused = pause_if_asked();
+      if (!paused) return paused;
+      block_ = block;
+      block_tries_ = 1;
+      block_points_ = 0;
+    }
+    const auto result = run_step(step_);
+    if (!result) {
+      if (result.error().code == ErrorCode::kStore) return result.error();
+      return Error{result.error().code,
+                   fmt::format("step {}, {}: {}", plan_.steps[step_].path, plan_.steps[step_].says,
+                               result.error().message)};
+    }
+    if (result->voided.empty()) {
+      ++step_;
+      continue;
+    }
+    const auto restarted = restart_block(result->voided);
+    if (!restarted) return restarted;
+  }
+  return {};
+}
+
+Result<StepResult> RunEngine::Run::run_step(std::size_t index) {
+  const PlannedStep& step = plan_.steps[index];
+  step_started_ = engine_.clock_.now();
+  says_ = step.says;
+  const auto noted = engine_.recorder_.step_started(step.path, step.says, watch_.now_s());
+  if (!noted) return noted.error();
+  // An abort also takes effect before a step that never waits.
+  const auto checked = after_tick();
+  if (!checked) return checked.error();
+  auto result = session_.run(step);
+  if (!result || !result->voided.empty()) return result;
+  remaining_.step_ended(index, Seconds{to_seconds(engine_.clock_.now() - step_started_)});
+  const auto ended = engine_.recorder_.step_ended(step.path, watch_.now_s(), result->evidence);
+  if (!ended) return ended.error();
+  return result;
+}
+
+Status RunEngine::Run::pause_if_asked() {
+  if (!engine_.pause_requested_) return {};
+  enter(RunEvent::kPause);
+  says_ = "paused before: " + plan_.steps[step_].says;
+  step_started_ = engine_.clock_.now();
+  auto noted = watch_.event("info", says_);
+  if (!noted) return noted;
+  while (engine_.pause_requested_) {
+    const auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
+    if (!ticked) return ticked;
+  }
+  enter(RunEvent::kResume);
+  return watch_.event("info", "resumed");
+}
+
+Status RunEngine::Run::restart_block(const std::string& reason) {
+  const PlannedStep& step = plan_.steps[step_];
+  if (block_ == 0) {
+    return Error{ErrorCode::kStale, fmt::format("step {}, {}: the point was voided {} times: {}",
+                                                step.path, step.says, RunSession::kTries, reason)};
+  }
+  if (block_tries_++ == kBlockTries) {
+    return Error{ErrorCode::kStale,
+                 fmt::format("step {}, {}: its indivisible block was interrupted {} times: {}",
+                             step.path, step.says, kBlockTries, reason)};
+  }
+  while (step_ > 0 && plan_.steps[step_ - 1].block == block_) --step_;
+  const auto noted =
+      watch_.event("warning", fmt::format("indivisible block {} interrupted, it restarts from step "
+                                          "{}: {}",
+                                          block_, plan_.steps[step_].path, reason));
+  if (!noted) return noted;
+  points_ -= block_points_;
+  block_points_ = 0;
+  return engine_.recorder_.void_block(block_, watch_.now_s(), reason);
+}
+
+Status RunEngine::Run::after_tick() {
+  report(says_);
+  if (engine_.abort_requested_) return Error{ErrorCode::kAborted, "aborted on request"};
+  const Seconds elapsed{to_seconds(engine_.clock_.now() - started_)};
+  const Seconds limit = engine_.config_.limits.run_time_maximum;
+  if (elapsed > limit) {
+    return Error{ErrorCode::kLimit,
+                 "the run has lasted for the bench's limit of " + duration_text(limit)};
+  }
+  return {};
+}
+
+Status RunEngine::Run::record(const Point& point) {
+  const auto recorded = engine_.recorder_.point(point);
+  if (!recorded) return recorded;
+  ++points_;
+  if (point.block != 0) ++block_points_;
+  if (engine_.point_) engine_.point_(point);
+  return {};
+}
+
+void RunEngine::Run::enter(RunEvent event) {
+  const auto next = next_state(engine_.state_, event);
+  assert(next.has_value());
+  engine_.state_ = *next;
+}
+
+void RunEngine::Run::report(const std::string& says) const {
+  if (!engine_.progress_) return;
+  const auto now = engine_.clock_.now();
+  engine_.progress_({engine_.state_, step_, plan_.steps.size(), says,
+                     Seconds{to_seconds(now - started_)},
+                     remaining_.remaining(step_, Seconds{to_seconds(now - step_started_)})});
+}
+
+Result<RunEnd> RunEngine::Run::finish(const Status& outcome) {
+  const bool aborted = !outcome && outcome.error().code == ErrorCode::kAborted;
+  enter(outcome ? RunEvent::kDone : (aborted ? RunEvent::kAbort : RunEvent::kFail));
+  report("coils to 0 A, heaters off");
+  const auto safe = make_safe(engine_.bench_);
+
+  RunEnd end;
+  end.outcome =
+      outcome ? RunOutcome::kCompleted : (aborted ? RunOutcome::kAborted : RunOutcome::kFailed);
+  end.reason = outcome ? "all steps done" : outcome.error().message;
+  end.safe_state_reached = static_cast<bool>(safe);
+  if (!safe) {
+    end.outcome = RunOutcome::kFailed;
+    end.reason += "; " + safe.error().message;
+  }
+  end.stream = engine_.bench_.gyro->statistics();
+  end.ended_at =
+      fmt::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(engine_.clock_.wall_now()));
+  enter(
+      end.outcome == RunOutcome::kCompleted
+          ? RunEvent::kSafeDone
+          : (end.outcome == RunOutcome::kAborted ? RunEvent::kSafeAborted : RunEvent::kSafeFailed));
+  const auto recorded = engine_.recorder_.end_run(end);
+  report(end.reason);
+  if (!outcome && outcome.error().code == ErrorCode::kStore) {
+    return Error{ErrorCode::kStore, end.reason + (safe ? "; the bench is in its safe state" : "")};
+  }
+  if (!recorded) return recorded.error();
+  return end;
+}
+
+RunEngine::RunEngine(const config::BenchConfig& config, drivers::Bench& bench,
+                     drivers::Clock& clock, drivers::Operator& person, Recorder& recorder)
+    : config_(config), bench_(bench), clock_(clock), operator_(person), recorder_(recorder) {}
+
+Result<std::vector<InstrumentRecord>> RunEngine::identify_instruments() {
+  std::vector<InstrumentRecord> records;
+  const auto identify = [&](const char* role, drivers::Instrument& instrument,
+                            const config::InstrumentConfig& config) -> Status {
+    auto identity = instrument.identity();
+    for (int i = 1; i < RunSession::kTries && !identity; ++i) identity = instrument.identity();
+    if (!identity) {
+      return Error{identity.error().code, fmt::format("{}: {}", role, identity.error().message)};
+    }
+    records.push_back(
+        {role, *identity, config.serial_number, config.calibrated_on, config.calibration_due});
+    return {};
+  };
+  for (const Status& status :
+       {identify("thermostat", *bench_.thermostat, config_.thermostat),
+        identify("coil_horizontal", *bench_.coil_horizontal, config_.coil_horizontal),
+        identify("coil_vertical", *bench_.coil_vertical, config_.coil_vertical),
+        identify("magnetometer", *bench_.magnetometer, config_.magnetometer),
+        identify("turntable", *bench_.turntable, config_.turntable),
+        identify("gyro", *bench_.gyro, config_.gyro)}) {
+    if (!status) return status.error();
+  }
+  return records;
+}
+
+Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {
+  const auto running = next_state(state_, RunEvent::kStart);
+  if (!running) {
+    return Error{ErrorCode::kUsage,
+                 fmt::format("the engine is {} and cannot start a run", name_of(state_))};
+  }
+  const auto instruments = identify_instruments();
+  if (!instruments) return instruments.error();
+  const auto number = recorder_.begin_run(header, *instruments);
+  if (!number) return number.error();
+  state_ = *running;
+
+  Run run(*this, plan);
+  const auto end = run.finish(run.execute());
+  abort_requested_ = false;
+  pause_requested_ = false;
+  if (!end) return end.error();
+  return RunSummary{*number, *end, run.points()};
+}
+
+}  // namespace fogbench::procedures

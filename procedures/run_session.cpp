@@ -1,0 +1,161 @@
+#include "procedures/run_session.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "procedures/estimate.hpp"
+#include "procedures/settle_detector.hpp"
+#include "procedures/transients.hpp"
+
+namespace fogbench::procedures {
+
+using drivers::from_seconds;
+
+Status RunSession::start() {
+  const auto started = watch_.start();
+  if (!started) return started;
+  return read_azimuth();
+}
+
+Status RunSession::tick(drivers::Clock::Instant deadline) {
+  const auto ticked = watch_.tick(deadline);
+  if (!ticked) return ticked;
+  return after_tick_();
+}
+
+Status RunSession::wait_until(drivers::Clock::Instant deadline) {
+  while (watch_.now() < deadline) {
+    const auto ticked = tick(deadline);
+    if (!ticked) return ticked;
+  }
+  return {};
+}
+
+Result<StepResult> RunSession::run(const PlannedStep& step) {
+  step_ = &step;
+  return std::visit([this](const auto& action) { return act(action); }, step.action);
+}
+
+Result<StepResult> RunSession::act(const SetTemperature& step) {
+  drivers::Thermostat& thermostat = *bench_.thermostat;
+  heated_ = step.mode != HeatingMode::kOff;
+  // The target first: a mode that heats must never act on an old target.
+  if (heated_) {
+    const auto set = thermostat.set_target(step.target);
+    if (!set) return set.error();
+  }
+  const auto switched = thermostat.set_mode(step.mode);
+  if (!switched) return switched.error();
+  return StepResult{};
+}
+
+Result<StepResult> RunSession::act(const SettleTemperature& step) {
+  SettleDetector detector({step.band.value, step.dwell.count(), step.slope_c_per_h});
+  TransientRecorder transients(config_.gyro, *bench_.gyro, watch_, step.segment, step.window);
+  const auto deadline = watch_.now() + from_seconds(step.timeout.count());
+  while (!detector.settled()) {
+    if (watch_.now() >= deadline) {
+      const auto noted = watch_.event(
+          "error", "temperature has not settled: " + detector.describe(), detector.evidence_json());
+      if (!noted) return noted.error();
+      return Error{ErrorCode::kTimeout,
+                   fmt::format("the temperature did not settle within {}: {}",
+                               duration_text(step.timeout), detector.describe())};
+    }
+    const auto ticked = tick(deadline);
+    if (!ticked) return ticked.error();
+    const auto recorded = transients.take([this](const Point& p) { return record(p); });
+    if (!recorded) return recorded.error();
+    const MonitorRow* row = watch_.new_row();
+    if (row == nullptr || std::isnan(row->thermostat.working_1.value)) continue;
+    const drivers::ThermostatReading& t = row->thermostat;
+    detector.add(watch_.time_s(t.taken_at), working_temperature_c(t),
+                 heated_ ? t.target.value : t.ambient.value);
+  }
+  return StepResult{detector.evidence_json(), {}};
+}
+
+Result<StepResult> RunSession::act(const Wait& step) {
+  TransientRecorder transients(config_.gyro, *bench_.gyro, watch_, step.segment, step.window);
+  const auto deadline = std::max(watch_.now() + from_seconds(step.duration.count()),
+                                 watch_.power_on() + from_seconds(step.operating_time.count()));
+  while (watch_.now() < deadline) {
+    const auto ticked = tick(deadline);
+    if (!ticked) return ticked.error();
+    const auto recorded = transients.take([this](const Point& p) { return record(p); });
+    if (!recorded) return recorded.error();
+  }
+  return StepResult{};
+}
+
+Result<StepResult> RunSession::act(const Average& step) {
+  PointLabels labels;
+  labels.kind = step.baseline ? PointKind::kBaseline : PointKind::kAverage;
+  labels.segment = step.segment;
+  return measure(step.duration, labels);
+}
+
+Result<StepResult> RunSession::act(const Prompt& step) {
+  const auto confirmed = operator_.confirm(step.text);
+  if (!confirmed) return confirmed.error();
+  if (!*confirmed) {
+    return Error{ErrorCode::kAborted, "the operator declined: " + step.text};
+  }
+  return StepResult{};
+}
+
+Result<StepResult> RunSession::measure(Seconds duration, const PointLabels& labels) {
+  std::string reason;
+  for (int attempt = 1; attempt <= kTries; ++attempt) {
+    // Whatever has arrived by now was measured before the window.
+    auto ticked = tick(watch_.now());
+    if (!ticked) return ticked.error();
+    MeasurementWindow window(config_.gyro, *bench_.gyro, watch_.power_on(), watch_.next_frame(),
+                             duration);
+    while (!window.complete()) {
+      // The last frame may come a little after it was measured.
+      ticked = tick(std::max(window.end_time(), watch_.now() + std::chrono::milliseconds{20}));
+      if (!ticked) return ticked.error();
+      window.add(watch_.frames());
+      if (watch_.new_row() != nullptr) window.add(*watch_.new_row());
+    }
+    reason = window.void_reason();
+    if (reason.empty()) {
+      const auto recorded = record(window.point(labels));
+      if (!recorded) return recorded.error();
+      return StepResult{};
+    }
+    const auto noted = watch_.event(
+        "warning", fmt::format("point voided: {}; try {} of {}", reason, attempt, kTries),
+        nlohmann::json{{"segment", labels.segment}, {"reason", reason}, {"try", attempt}}.dump());
+    if (!noted) return noted.error();
+  }
+  return StepResult{{}, reason};
+}
+
+Status RunSession::record(Point point) {
+  point.test = step_->test;
+  point.block = step_->block;
+  const auto recorded = on_point_(point);
+  if (!recorded || point.kind == PointKind::kTransient) return recorded;
+  return compare_sensors(point);
+}
+
+Status RunSession::compare_sensors(const Point& point) {
+  const double difference_c = point.temperature_control_c - point.temperature_c;
+  const double allowed_c = config_.limits.sensor_disagreement.value;
+  if (std::isnan(difference_c) || std::abs(difference_c) <= allowed_c) return {};
+  return watch_.event(
+      "warning",
+      fmt::format("the control sensor is {:.2f} degC from the working sensors, expected at most {} "
+                  "degC",
+                  difference_c, allowed_c),
+      nlohmann::json{{"control_c", point.temperature_control_c},
+                     {"working_c", point.temperature_c},
+                     {"allowed_c", allowed_c}}
+          .dump());
+}
+
+}  // namespace fogbench::procedures

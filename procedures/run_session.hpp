@@ -1,0 +1,86 @@
+#pragma once
+// One run's steps on the bench: what each kind of step does, on top of the watch. Which step comes
+// next, and what an end means, is the run engine's.
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "config/bench.hpp"
+#include "drivers/instruments.hpp"
+#include "procedures/bench_watch.hpp"
+#include "procedures/measurement_window.hpp"
+#include "procedures/plan.hpp"
+#include "procedures/recorder.hpp"
+
+namespace fogbench::procedures {
+
+/// How a step ended.
+struct StepResult {
+  std::string evidence;  ///< JSON, may be empty
+  std::string voided;    ///< why its point could not be measured; empty when the step is done
+};
+
+class RunSession {
+ public:
+  /// What happens with every tick besides the bench's own: abort, progress.
+  using AfterTick = std::function<Status()>;
+  using OnPoint = std::function<Status(const Point&)>;
+
+  /// A point is measured at most this often before its step is given up.
+  static constexpr int kTries = 3;
+
+  /// All must outlive the session.
+  RunSession(const config::BenchConfig& config, drivers::Bench& bench, drivers::Operator& person,
+             BenchWatch& watch, AfterTick after_tick, OnPoint on_point)
+      : config_(config),
+        bench_(bench),
+        operator_(person),
+        watch_(watch),
+        after_tick_(std::move(after_tick)),
+        on_point_(std::move(on_point)) {}
+
+  Status start();
+  Status tick(drivers::Clock::Instant deadline);
+  Result<StepResult> run(const PlannedStep& step);
+
+ private:
+  Result<StepResult> act(const SetTemperature& step);
+  Result<StepResult> act(const SettleTemperature& step);
+  Result<StepResult> act(const Wait& step);
+  Result<StepResult> act(const Average& step);
+  Result<StepResult> act(const CompensateField& step);
+  Result<StepResult> act(const SweepLevel& step);
+  Result<StepResult> act(const Rotate& step);
+  Result<StepResult> act(const Prompt& step);
+
+  /// Measures one point and records it; up to kTries windows.
+  Result<StepResult> measure(Seconds duration, const PointLabels& labels);
+  Status record(Point point);
+  Status compare_sensors(const Point& point);
+  Status wait_until(drivers::Clock::Instant deadline);
+
+  Status energise();
+  Status set_currents(config::Ampere horizontal, config::Ampere vertical);
+  /// The mean of a few fresh readings, gyro axes, uT.
+  Result<std::array<double, 3>> measure_field();
+  Status read_azimuth();
+
+  const config::BenchConfig& config_;
+  drivers::Bench& bench_;
+  drivers::Operator& operator_;
+  BenchWatch& watch_;
+  AfterTick after_tick_;
+  OnPoint on_point_;
+  const PlannedStep* step_ = nullptr;
+
+  bool heated_ = false;  ///< the thermostat holds a target; else the room is where it settles
+  Degree azimuth_{0.0};
+  bool energised_ = false;
+  config::Ampere horizontal_, vertical_;  ///< as set
+  /// Currents that null the ambient field at this azimuth.
+  std::optional<std::array<config::Ampere, 2>> zero_;
+};
+
+}  // namespace fogbench::procedures

@@ -1,0 +1,261 @@
+#include "procedures/run_engine.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/procedures/engine_fixture.hpp"
+
+namespace fogbench::procedures {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(RunEngine, RunsEveryKindOfStepAndEndsSafe) {
+  Rig rig;
+  const RunSummary summary = rig.summary_of(everything());
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted) << summary.end.reason;
+  EXPECT_TRUE(summary.end.safe_state_reached);
+  EXPECT_TRUE(rig.plant.safe());
+  ASSERT_EQ(rig.log.ends.size(), 1U);
+  EXPECT_EQ(rig.log.ends[0].ended_at.substr(0, 13), "2026-01-01T00");
+  for (const auto& s : rig.log.steps) EXPECT_TRUE(s.ended) << s.path;
+  EXPECT_EQ(rig.log.points.size(), summary.points);
+  EXPECT_EQ(rig.log.instrument_records.size(), 6U);
+  EXPECT_EQ(rig.log.frames,
+            rig.plant.clock.now().time_since_epoch() / std::chrono::milliseconds(10));
+}
+
+TEST(RunEngine, FillsEveryFieldOfAPoint) {
+  Rig rig;
+  rig.plant.rate = [](std::int64_t i) { return i % 2 == 0 ? 12.0 : 13.0; };
+  rig.plant.control_offset_c = 0.25;
+  rig.plant.speed_c_per_s = 0.001;
+  const auto summary = rig.summary_of({heat(31.0), compensate(), sweep(Axis::kX, {100.0}, 10.0)});
+  ASSERT_EQ(rig.log.points.size(), 1U) << summary.end.reason;
+  const Point& p = rig.log.points[0];
+  EXPECT_EQ(p.kind, PointKind::kAverage);
+  EXPECT_EQ(p.segment, "coil_x/up");
+  EXPECT_EQ(p.test, 1);
+  EXPECT_EQ(p.block, 1);
+  EXPECT_DOUBLE_EQ(p.duration_s, 10.0);
+  EXPECT_EQ(p.count, 1000U);
+  EXPECT_EQ(p.dropped, 0U);
+  EXPECT_NEAR(p.rate_deg_per_h, 2.5, 1e-12);
+  EXPECT_NEAR(p.rate_std_deg_per_h, 0.5 * std::sqrt(1000.0 / 999.0), 1e-12);
+  EXPECT_NEAR(p.rate_std_error_deg_per_h, p.rate_std_deg_per_h / std::sqrt(1000.0), 1e-15);
+  EXPECT_NEAR(p.temperature_rate_c_per_h, 3.6, 1e-6);
+  EXPECT_NEAR(p.temperature_end_c - p.temperature_start_c, 0.01, 1e-9);
+  EXPECT_NEAR(p.temperature_c, 21.0 + 0.001 * p.time_s, 1e-3);
+  EXPECT_NEAR(p.temperature_gradient_c, 0.1, 1e-9);
+  EXPECT_NEAR(p.temperature_control_c - p.temperature_c, 0.25, 1e-9);
+  EXPECT_DOUBLE_EQ(p.target_c, 31.0);
+  EXPECT_DOUBLE_EQ(p.ambient_c, 21.0);
+  EXPECT_DOUBLE_EQ(p.heater_w, 5.0);
+  EXPECT_NEAR(p.field_x_ut, 100.0, 0.2);
+  EXPECT_NEAR(p.field_y_ut, 0.5 * 100.0 / 89.9, 0.2);
+  EXPECT_NEAR(p.field_z_ut, -1.0, 1e-9);
+  EXPECT_DOUBLE_EQ(p.field_set_ut, 100.0);
+  EXPECT_NEAR(p.coil_current_a, 148.0 / 89.9, 0.01);
+  EXPECT_DOUBLE_EQ(p.azimuth_deg, 0.0);
+}
+
+TEST(RunEngine, RecordsTransientsWindowByWindowWithoutHoles) {
+  Rig rig;
+  rig.plant.speed_c_per_s = 0.05;
+  rig.summary_of({heat(23.0), settle(600.0, "thermostat/heating")});
+  ASSERT_GE(rig.log.points.size(), 8U);
+  for (std::size_t i = 0; i < rig.log.points.size(); ++i) {
+    const Point& p = rig.log.points[i];
+    EXPECT_EQ(p.kind, PointKind::kTransient);
+    EXPECT_EQ(p.segment, "thermostat/heating");
+    EXPECT_EQ(p.count, 500U);
+    EXPECT_NEAR(p.time_s, rig.log.points[0].time_s + 5.0 * static_cast<double>(i), 1e-9);
+  }
+  EXPECT_NEAR(rig.log.points[2].temperature_rate_c_per_h, 180.0, 1e-6);
+}
+
+TEST(RunEngine, StoresTheEvidenceOfSettling) {
+  Rig rig;
+  rig.summary_of({heat(31.0), settle()});
+  const auto evidence = nlohmann::json::parse(rig.log.steps[1].evidence);
+  EXPECT_TRUE(evidence["settled"].get<bool>());
+  EXPECT_GE(evidence["dwell_s"].get<double>(), 20.0);
+  EXPECT_NEAR(evidence["mean_c"].get<double>(), 31.0, 0.2);
+  EXPECT_LE(std::abs(evidence["slope_c_per_h"].get<double>()), 1.0);
+}
+
+TEST(RunEngine, FailsWhenTheTemperatureDoesNotSettleInTime) {
+  Rig rig;
+  rig.plant.speed_c_per_s = 0.001;
+  const auto summary = rig.summary_of({heat(31.0), settle(100.0)});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kFailed);
+  EXPECT_THAT(summary.end.reason, HasSubstr("did not settle within 1 min 40 s"));
+  EXPECT_THAT(summary.end.reason, HasSubstr("target of 31.000 degC"));
+  EXPECT_TRUE(rig.log.has_event("temperature has not settled"));
+  EXPECT_TRUE(rig.plant.safe());
+}
+
+TEST(RunEngine, SettlesToTheRoomWithTheHeatersOff) {
+  Rig rig;
+  rig.plant.carrier_c = 25.0;
+  rig.plant.target_c = 31.0;
+  const auto summary = rig.summary_of({heat(0.0, HeatingMode::kOff), settle()});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted) << summary.end.reason;
+  EXPECT_NEAR(rig.plant.carrier_c, 21.0, 0.2);
+}
+
+TEST(RunEngine, WaitsForOperatingTimeSincePowerOn) {
+  Rig rig;
+  rig.summary_of({wait(30.0), step(config::Wait{0.0, 100.0, "", 60.0})});
+  EXPECT_NEAR(drivers::to_seconds(rig.plant.clock.now().time_since_epoch()), 100.0, 0.1);
+}
+
+TEST(RunEngine, NullsTheFieldAtEachAzimuthAndSweepsFromThere) {
+  Rig rig;
+  const auto summary = rig.summary_of({compensate(), sweep(Axis::kX, {0.0, 50.0, -50.0, 0.0}),
+                                       sweep(Axis::kY, {0.0, 50.0}), rotate(90.0), compensate(),
+                                       sweep(Axis::kZ, {0.0, 50.0})});
+  ASSERT_EQ(rig.log.points.size(), 8U) << summary.end.reason;
+  const auto& p = rig.log.points;
+  for (const Point& q : p) {
+    const double along =
+        q.segment[5] == 'x' ? q.field_x_ut : (q.segment[5] == 'y' ? q.field_y_ut : q.field_z_ut);
+    EXPECT_NEAR(along, q.field_set_ut, 0.5) << q.segment;
+  }
+  std::vector<std::string> segments;
+  for (const Point& q : p) segments.push_back(q.segment);
+  EXPECT_THAT(segments, ElementsAre("coil_x/up", "coil_x/up", "coil_x/down", "coil_x/return",
+                                    "coil_y/up", "coil_y/up", "coil_z/up", "coil_z/up"));
+  EXPECT_DOUBLE_EQ(p[7].azimuth_deg, 90.0);
+  const auto evidence = nlohmann::json::parse(rig.log.steps[0].evidence);
+  EXPECT_LE(std::abs(evidence["residual_field_ut"][0].get<double>()), 0.2);
+  EXPECT_NEAR(evidence["current_horizontal_a"].get<double>(), 48.0 / 89.9, 0.01);
+}
+
+TEST(RunEngine, TurnsTheGyroOnlyWithTheCoilsAtZero) {
+  Rig rig;
+  rig.plant.fails = [&](int, const std::string& name) {
+    if (name == "turntable.rotate_to") {
+      EXPECT_EQ(rig.plant.current_a[0], 0.0);
+      EXPECT_EQ(rig.plant.current_a[1], 0.0);
+    }
+    return false;
+  };
+  EXPECT_EQ(rig.summary_of({compensate(), rotate(90.0)}).end.outcome, RunOutcome::kCompleted);
+}
+
+TEST(RunEngine, FailsWhenTheFieldCannotBeNulled) {
+  Rig strong;
+  strong.plant.ambient_ut[0] = -80.0;
+  EXPECT_THAT(strong.summary_of({compensate()}).end.reason,
+              HasSubstr("nulling the ambient field along the vertical takes 80.0 uT"));
+  Rig restless;
+  int reads = 0;
+  restless.plant.fails = [&](int, const std::string& name) {
+    if (name == "magnetometer.read") restless.plant.ambient_ut[0] = ++reads / 3 % 2 == 0 ? 5 : -5;
+    return false;
+  };
+  EXPECT_THAT(restless.summary_of({compensate()}).end.reason, HasSubstr("after 10 corrections"));
+}
+
+TEST(RunEngine, FailsWhenTheTurntableHasNotTurned) {
+  Rig rig;
+  rig.plant.turntable_stuck = true;
+  EXPECT_THAT(rig.summary_of({rotate(90.0)}).end.reason, HasSubstr("stands at 0.00 deg"));
+}
+
+TEST(RunEngine, RefusesASweepWhereTheTurntableDoesNotStandAsPlanned) {
+  Rig rig;
+  rig.plant.azimuth_deg = 45.0;
+  EXPECT_THAT(rig.summary_of({compensate(), sweep(Axis::kY, {0.0})}).end.reason,
+              HasSubstr("azimuth 45.00 deg"));
+}
+
+TEST(RunEngine, WarnsWhenTheControlSensorDisagrees) {
+  Rig rig;
+  rig.plant.control_offset_c = 1.5;
+  EXPECT_EQ(rig.summary_of({average()}).end.outcome, RunOutcome::kCompleted);
+  EXPECT_TRUE(rig.log.has_event("control sensor is 1.50 degC from"));
+  Rig agreeing;
+  agreeing.summary_of({average()});
+  EXPECT_FALSE(agreeing.log.has_event("control sensor"));
+}
+
+TEST(RunEngine, StopsHeatingBeyondTheBenchsLimit) {
+  Rig rig;
+  rig.plant.carrier_c = 62.5;
+  rig.plant.ambient_c = 62.5;
+  const auto summary = rig.summary_of({average()});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kFailed);
+  EXPECT_THAT(summary.end.reason, HasSubstr("the bench's limit is 60 degC"));
+}
+
+TEST(RunEngine, StopsARunThatLastsTooLong) {
+  Rig rig;
+  const Plan plan = rig.plan({heat(31.0), settle(5000.0)});
+  rig.plant.speed_c_per_s = 0.0;
+  rig.config.limits.run_time_maximum = Seconds{1000.0};
+  const auto summary = rig.engine.run(plan, RunHeader{});
+  ASSERT_TRUE(summary);
+  EXPECT_THAT(summary->end.reason, HasSubstr("the bench's limit of 16 min 40 s"));
+}
+
+TEST(RunEngine, AnOperatorWhoDeclinesAborts) {
+  Rig rig;
+  rig.plant.operator_agrees = false;
+  const auto summary = rig.summary_of({step(config::Prompt{"turn it"}), average()});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kAborted);
+  EXPECT_THAT(summary.end.reason, HasSubstr("declined: turn it"));
+  EXPECT_TRUE(rig.log.points.empty());
+}
+
+TEST(RunEngine, RecordsAPointBeforeAnyObserverSeesIt) {
+  Rig rig;
+  std::size_t seen = 0;
+  rig.engine.on_point([&](const Point& p) {
+    ++seen;
+    ASSERT_EQ(rig.log.points.size(), seen);
+    EXPECT_EQ(rig.log.points.back().time_s, p.time_s);
+  });
+  rig.summary_of({average(), average(), wait(20.0, "static")});
+  EXPECT_EQ(seen, 2U + 3U);
+
+  Rig full;
+  full.log.fails = [](const std::string& call) { return call == "point"; };
+  full.engine.on_point([](const Point&) { FAIL() << "seen but not recorded"; });
+  EXPECT_FALSE(full.run({average()}));
+}
+
+TEST(RunEngine, ReportsProgressWithTimeThatRunsOut) {
+  Rig rig;
+  std::vector<Progress> all;
+  rig.engine.on_progress([&](const Progress& p) { all.push_back(p); });
+  rig.summary_of({wait(10.0), average(10.0), wait(20.0)});
+  ASSERT_GT(all.size(), 40U);
+  EXPECT_NEAR(all.front().remaining.count(), 40.0, 1e-9);
+  EXPECT_EQ(all.front().says, "wait for 10 s");
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    EXPECT_LE(all[i].remaining.count(), all[i - 1].remaining.count() + 1e-9);
+  }
+  EXPECT_EQ(all.back().state, RunState::kCompleted);
+  EXPECT_EQ(all.back().remaining.count(), 0.0);
+}
+
+TEST(RunEngine, CorrectsTheRemainingTimeAsSettlingEnds) {
+  Rig rig;
+  const Plan plan = rig.plan({heat(31.0), settle(9000.0), heat(41.0), settle(9000.0)});
+  std::vector<Progress> at_second;
+  rig.engine.on_progress([&](const Progress& p) {
+    if (p.step == 3) at_second.push_back(p);
+  });
+  ASSERT_TRUE(rig.engine.run(plan, RunHeader{}));
+  // The fake heats 60 times faster than the estimate says: the second settling is expected to.
+  EXPECT_LT(at_second.front().remaining.count(), 0.1 * plan.steps[3].estimate.count());
+}
+
+}  // namespace
+}  // namespace fogbench::procedures
