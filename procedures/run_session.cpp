@@ -25,7 +25,7 @@ Status RunSession::tick(drivers::Clock::Instant deadline) {
   return after_tick_();
 }
 
-Status RunSession::wait_until(drivers::Clock::Instant deadline) {
+Status RunSession::tick_until(drivers::Clock::Instant deadline) {
   while (watch_.now() < deadline) {
     const auto ticked = tick(deadline);
     if (!ticked) return ticked;

@@ -59,7 +59,7 @@ class RunSession {
   Result<StepResult> measure(Seconds duration, const PointLabels& labels);
   Status record(Point point);
   Status compare_sensors(const Point& point);
-  Status wait_until(drivers::Clock::Instant deadline);
+  Status tick_until(drivers::Clock::Instant deadline);
 
   Status energise();
   Status set_currents(config::Ampere horizontal, config::Ampere vertical);

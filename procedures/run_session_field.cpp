@@ -102,7 +102,7 @@ Result<StepResult> RunSession::act(const SweepLevel& step) {
   }
   const auto set = set_currents(horizontal, vertical);
   if (!set) return set.error();
-  const auto settled = wait_until(watch_.now() + drivers::from_seconds(step.settle.count()));
+  const auto settled = tick_until(watch_.now() + drivers::from_seconds(step.settle.count()));
   if (!settled) return settled.error();
   return measure(step.duration, {PointKind::kAverage, step.segment, step.level.value, step.axis});
 }
