@@ -27,36 +27,38 @@ Status repeatedly(const std::function<Status()>& action) {
 }
 
 Status heaters_off(drivers::Thermostat& thermostat) {
-  const auto switched = thermostat.set_mode(HeatingMode::kOff);
+  const auto switched = repeatedly([&] { return thermostat.set_mode(HeatingMode::kOff); });
   if (!switched) return switched;
-  double power_w = 0.0;
+  Status last;
   for (int i = 0; i < kPowerReads; ++i) {
     const auto reading = thermostat.read();
-    if (!reading) return reading.error();
+    if (!reading) {
+      last = reading.error();
+      continue;
+    }
     if (reading->mode != HeatingMode::kOff) {
       return Error{ErrorCode::kDevice, "the heating mode reads back other than off"};
     }
-    power_w = reading->boost_power.value + reading->normal_power.value;
+    const double power_w = reading->boost_power.value + reading->normal_power.value;
     if (power_w <= kOffW) return {};
+    last = Error{ErrorCode::kDevice, fmt::format("the heaters still draw {:.1f} W", power_w)};
   }
-  return Error{ErrorCode::kDevice, fmt::format("the heaters still draw {:.1f} W", power_w)};
+  return last;
 }
 
 }  // namespace
 
 Status make_safe(drivers::Bench& bench) {
   std::vector<std::string> failed;
-  const auto attempt = [&](const char* name, const std::function<Status()>& action) {
-    const auto status = repeatedly(action);
+  const auto expect = [&](const char* name, const Status& status) {
     if (!status) failed.push_back(fmt::format("{} ({})", name, status.error().message));
   };
-  if (bench.thermostat) attempt("thermostat", [&] { return heaters_off(*bench.thermostat); });
-  if (bench.coil_horizontal) {
-    attempt("coil_horizontal", [&] { return bench.coil_horizontal->make_safe(); });
-  }
-  if (bench.coil_vertical) {
-    attempt("coil_vertical", [&] { return bench.coil_vertical->make_safe(); });
-  }
+  const auto current_off = [](drivers::CoilSupply& coil) {
+    return repeatedly([&] { return coil.make_safe(); });
+  };
+  if (bench.thermostat) expect("thermostat", heaters_off(*bench.thermostat));
+  if (bench.coil_horizontal) expect("coil_horizontal", current_off(*bench.coil_horizontal));
+  if (bench.coil_vertical) expect("coil_vertical", current_off(*bench.coil_vertical));
   if (failed.empty()) return {};
   return Error{ErrorCode::kDevice,
                fmt::format("the safe state is not confirmed for {}", fmt::join(failed, "; "))};

@@ -1,0 +1,169 @@
+// Whatever fails, the bench ends at 0 A with its heaters off, or the end says which instrument does
+// not.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/procedures/engine_fixture.hpp"
+
+namespace fogbench::procedures {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+void energise(fogbench::test::FakePlant& plant) {
+  plant.mode = HeatingMode::kNormal;
+  plant.current_a = {1.0, -2.0};
+  plant.output_on = {true, true};
+}
+
+TEST(MakeSafe, SwitchesEverythingOff) {
+  Rig rig;
+  energise(rig.plant);
+  EXPECT_TRUE(make_safe(rig.bench));
+  EXPECT_TRUE(rig.plant.safe());
+}
+
+TEST(MakeSafe, TriesEveryInstrumentAndNamesAllThatFail) {
+  Rig rig;
+  energise(rig.plant);
+  rig.plant.fails = [](int, const std::string& name) {
+    return name == "thermostat.set_mode" || name == "coil_horizontal.make_safe";
+  };
+  const auto safe = make_safe(rig.bench);
+  ASSERT_FALSE(safe);
+  EXPECT_THAT(safe.error().message, AllOf(HasSubstr("thermostat"), HasSubstr("coil_horizontal"),
+                                          Not(HasSubstr("coil_vertical"))));
+  EXPECT_EQ(rig.plant.current_a[1], 0.0);
+}
+
+TEST(MakeSafe, ALostMessageIsSentAgain) {
+  Rig rig;
+  energise(rig.plant);
+  rig.plant.fails = [](int call, const std::string&) { return call % 2 == 1; };
+  EXPECT_TRUE(make_safe(rig.bench));
+  EXPECT_TRUE(rig.plant.safe());
+}
+
+TEST(MakeSafe, BelievesTheHeatersPowerAndNotTheCommand) {
+  Rig rig;
+  rig.plant.heaters_stuck = true;
+  const auto safe = make_safe(rig.bench);
+  ASSERT_FALSE(safe);
+  EXPECT_THAT(safe.error().message, HasSubstr("the heaters still draw 5.0 W"));
+}
+
+/// Runs everything with the calls failing that `fails` picks, and checks how the bench is left.
+/// Returns the number of calls made.
+int check_end(const std::function<bool(int, const std::string&)>& fails, const std::string& what) {
+  Rig rig;
+  rig.plant.fails = fails;
+  const auto summary = rig.run(everything());
+  if (!summary) {
+    // Not begun: nothing was commanded.
+    EXPECT_TRUE(rig.plant.commands.empty()) << what;
+    return rig.plant.calls;
+  }
+  const RunEnd& end = summary->end;
+  if (end.safe_state_reached) {
+    EXPECT_TRUE(rig.plant.safe()) << what << end.reason;
+  } else {
+    EXPECT_EQ(end.outcome, RunOutcome::kFailed) << what;
+    const auto unsafe = end.reason.find("the safe state is not confirmed for");
+    EXPECT_NE(unsafe, std::string::npos) << what << end.reason;
+    const std::string named = end.reason.substr(std::min(unsafe, end.reason.size()));
+    if (rig.plant.heater_w() != 0.0) {
+      EXPECT_THAT(named, HasSubstr("thermostat")) << what;
+    }
+    if (rig.plant.current_a[0] != 0.0) {
+      EXPECT_THAT(named, HasSubstr("coil_horizontal")) << what;
+    }
+    if (rig.plant.current_a[1] != 0.0) {
+      EXPECT_THAT(named, HasSubstr("coil_vertical")) << what;
+    }
+  }
+  EXPECT_EQ(rig.log.ends.size(), 1U) << what;
+  return rig.plant.calls;
+}
+
+TEST(SafeState, IsReachedWhicheverCallFailsOnce) {
+  const int calls = check_end([](int, const std::string&) { return false; }, "none");
+  ASSERT_GT(calls, 200);
+  for (int n = 1; n <= calls; ++n) {
+    Rig rig;
+    rig.plant.fails = [n](int call, const std::string&) { return call == n; };
+    const auto summary = rig.run(everything());
+    ASSERT_TRUE(summary) << n << summary.error().message;
+    EXPECT_TRUE(summary->end.safe_state_reached) << n << summary->end.reason;
+    EXPECT_TRUE(rig.plant.safe()) << n;
+  }
+}
+
+TEST(SafeState, IsReachedOrItsFailureNamedWhicheverInstrumentDies) {
+  const std::vector<std::string> instruments{"thermostat",   "coil_horizontal", "coil_vertical",
+                                             "magnetometer", "turntable",       "gyro"};
+  int calls = 1;
+  for (const std::string& instrument : instruments) {
+    for (int n = 1; n <= calls; n += 7) {
+      const auto dies = [&](int call, const std::string& name) {
+        return call >= n && name.starts_with(instrument);
+      };
+      calls = std::max(calls, check_end(dies, instrument + " at " + std::to_string(n) + ": "));
+    }
+  }
+  EXPECT_GT(calls, 200);
+}
+
+TEST(SafeState, ADeadSupplyIsNamedInTheEnd) {
+  Rig rig;
+  rig.plant.fails = [&](int, const std::string& name) {
+    return name.starts_with("coil_vertical") && rig.plant.current_a[1] != 0.0;
+  };
+  const auto summary = rig.summary_of({heat(31.0), compensate(), sweep(Axis::kY, {0.0, 50.0})});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kFailed);
+  EXPECT_FALSE(summary.end.safe_state_reached);
+  EXPECT_THAT(summary.end.reason, HasSubstr("not confirmed for coil_vertical"));
+  EXPECT_EQ(rig.plant.current_a[0], 0.0);
+  EXPECT_EQ(rig.plant.heater_w(), 0.0);
+}
+
+TEST(SafeState, IsReachedWhateverTheRunLogRefuses) {
+  for (const std::string call :
+       {"step_started", "step_ended", "event", "point", "monitor", "gyro_samples", "end_run"}) {
+    Rig rig;
+    rig.log.fails = [&](const std::string& called) { return called == call; };
+    // A voided point provokes an event.
+    rig.plant.lost = [](std::int64_t i) { return i > 3000 && i < 3100; };
+    const auto summary = rig.run({heat(31.0), wait(25.0), average(10.0)});
+    ASSERT_FALSE(summary) << call;
+    EXPECT_EQ(summary.error().code, ErrorCode::kStore) << call;
+    EXPECT_TRUE(rig.plant.safe()) << call;
+  }
+}
+
+TEST(SafeState, ARunThatCannotBeBegunTouchesNothing) {
+  Rig unrecorded;
+  unrecorded.log.fails = [](const std::string& call) { return call == "begin_run"; };
+  EXPECT_FALSE(unrecorded.run(everything()));
+  EXPECT_TRUE(unrecorded.plant.commands.empty());
+  Rig unknown;
+  unknown.plant.fails = [](int, const std::string& name) {
+    return name == "coil_vertical.identity";
+  };
+  const auto summary = unknown.run(everything());
+  ASSERT_FALSE(summary);
+  EXPECT_THAT(summary.error().message, HasSubstr("coil_vertical: "));
+  EXPECT_TRUE(unknown.plant.commands.empty());
+}
+
+TEST(SafeState, NothingIsCommandedWhileAPlanIsMade) {
+  Rig rig;
+  rig.plan(everything());
+  EXPECT_EQ(rig.plant.calls, 0);
+}
+
+}  // namespace
+}  // namespace fogbench::procedures
