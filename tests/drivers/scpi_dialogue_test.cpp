@@ -1,0 +1,154 @@
+#include "drivers/scpi_dialogue.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/fake_transports.hpp"
+
+namespace fogbench::drivers {
+namespace {
+
+class ScpiDialogueTest : public testing::Test {
+ protected:
+  ScpiDialogueTest() {
+    device_.name = "test supply";
+    device_.identity = "KEPCO,BOP";
+    device_.initialise = {"FUNC:MODE CURR", "VOLT 30"};
+    device_.set = "CURR {value}";
+    far_.answers = {{"*IDN?", "KEPCO,BOP 36-6M,E12345,4.10"}, {"MEAS:CURR?", "-1.112E+00"}};
+  }
+  Result<ScpiDialogue> open() {
+    return ScpiDialogue::open("coil", device_, std::make_unique<support::FakeMessages>(far_));
+  }
+  ScpiDialogue opened() {
+    auto dialogue = open();
+    EXPECT_TRUE(dialogue) << dialogue.error().message;
+    far_.sent.clear();
+    return std::move(*dialogue);
+  }
+
+  config::ScpiDevice device_;
+  support::FakeScpi far_;
+  const Error timeout_{ErrorCode::kTimeout, "no answer in 1 s"};
+};
+
+TEST_F(ScpiDialogueTest, OpensByClearingIdentifyingForgettingOldErrorsAndInitialising) {
+  far_.errors = {"-113,\"Undefined header\"", "-410,\"Query INTERRUPTED\""};
+  const auto dialogue = open();
+  ASSERT_TRUE(dialogue) << dialogue.error().message;
+  EXPECT_EQ(dialogue->identity(), "KEPCO,BOP 36-6M,E12345,4.10");
+  EXPECT_EQ(far_.clears, 1);
+  EXPECT_EQ(far_.sent,
+            (std::vector<std::string>{"*IDN?", "SYST:ERR?", "SYST:ERR?", "SYST:ERR?",
+                                      "FUNC:MODE CURR", "SYST:ERR?", "VOLT 30", "SYST:ERR?"}));
+}
+
+TEST_F(ScpiDialogueTest, AnotherInstrumentIsADeviceError) {
+  far_.answers["*IDN?"] = "ACME,Toaster\n\x01";
+  const auto dialogue = open();
+  ASSERT_FALSE(dialogue);
+  EXPECT_EQ(dialogue.error().code, ErrorCode::kDevice);
+  EXPECT_EQ(dialogue.error().message, "coil: says that it is ACME,Toaster??, expected KEPCO,BOP");
+  EXPECT_EQ(far_.sent, std::vector<std::string>{"*IDN?"});
+}
+
+TEST_F(ScpiDialogueTest, NeverSendsASelfTest) {
+  device_.initialise.push_back("*cls;*tst?");
+  const auto dialogue = open();
+  ASSERT_FALSE(dialogue);
+  EXPECT_EQ(dialogue.error().code, ErrorCode::kBadInput);
+  EXPECT_TRUE(far_.sent.empty());
+}
+
+TEST_F(ScpiDialogueTest, ACommandReportsEveryEntryOfTheErrorQueue) {
+  ScpiDialogue dialogue = opened();
+  far_.obey = [&](const std::string&) {
+    far_.errors = {"-222,\"Data out of range\"", "-310,\"System error\""};
+  };
+  const Status status = dialogue.set(99.5);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::kDevice);
+  EXPECT_EQ(status.error().message,
+            "coil: CURR 99.500000 was refused: -222,\"Data out of range\"; -310,\"System error\"");
+  EXPECT_TRUE(far_.errors.empty());
+  far_.obey = nullptr;
+  EXPECT_TRUE(dialogue.set(1.0));
+}
+
+TEST_F(ScpiDialogueTest, AnErrorQueueThatDoesNotEndIsAProtocolError) {
+  ScpiDialogue dialogue = opened();
+  far_.errors.assign(200, "-350,\"Queue overflow\"");
+  const Status status = dialogue.command("OUTP ON");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::kProtocol);
+}
+
+TEST_F(ScpiDialogueTest, AnErrorQueueThatAnswersNonsenseIsAProtocolError) {
+  ScpiDialogue dialogue = opened();
+  far_.errors = {"hello"};
+  const Status status = dialogue.command("OUTP ON");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::kProtocol);
+}
+
+TEST_F(ScpiDialogueTest, ALateAnswerIsForgottenAndTheQuestionPutAgain) {
+  ScpiDialogue dialogue = opened();
+  far_.read_failures = {timeout_};
+  const int clears = far_.clears;
+  EXPECT_EQ(*dialogue.query_number("MEAS:CURR?"), -1.112);
+  EXPECT_EQ(far_.clears, clears + 1);
+  EXPECT_EQ(far_.sent, (std::vector<std::string>{"MEAS:CURR?", "MEAS:CURR?"}));
+}
+
+TEST_F(ScpiDialogueTest, TwoLostAnswersAreATimeout) {
+  ScpiDialogue dialogue = opened();
+  far_.read_failures = {timeout_, timeout_};
+  const auto value = dialogue.query_number("MEAS:CURR?");
+  ASSERT_FALSE(value);
+  EXPECT_EQ(value.error().code, ErrorCode::kTimeout);
+  EXPECT_EQ(value.error().message, "coil: MEAS:CURR?: no answer in 1 s");
+}
+
+TEST_F(ScpiDialogueTest, ACommandIsSentOnceEvenWhenItsTransferFails) {
+  ScpiDialogue dialogue = opened();
+  far_.write_failures = {timeout_};
+  const Status status = dialogue.set(1.0);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::kTimeout);
+  EXPECT_TRUE(far_.sent.empty());
+}
+
+TEST_F(ScpiDialogueTest, AnUnpluggedInstrumentIsNotAskedAgain) {
+  ScpiDialogue dialogue = opened();
+  far_.read_failures = {{ErrorCode::kDevice, "unplugged"}};
+  const auto value = dialogue.query("MEAS:CURR?");
+  ASSERT_FALSE(value);
+  EXPECT_EQ(value.error().code, ErrorCode::kDevice);
+  EXPECT_EQ(far_.sent.size(), 1u);
+}
+
+TEST_F(ScpiDialogueTest, NumbersAreReadAsInstrumentsWriteThem) {
+  ScpiDialogue dialogue = opened();
+  const std::pair<const char*, double> good[] = {
+      {"+1.5", 1.5}, {" -2.5E-03\r\n", -2.5e-3}, {"0", 0.0}, {".25", 0.25}};
+  for (const auto& [text, value] : good) {
+    far_.answers["MEAS:CURR?"] = text;
+    EXPECT_EQ(*dialogue.query_number("MEAS:CURR?"), value) << text;
+  }
+  for (const char* text : {"", "A 1.5", "1.5 A", "nan", "inf", "9.91E37", "-9.9E37"}) {
+    far_.answers["MEAS:CURR?"] = text;
+    const auto value = dialogue.query_number("MEAS:CURR?");
+    ASSERT_FALSE(value) << text;
+    EXPECT_EQ(value.error().code, ErrorCode::kProtocol) << text;
+  }
+}
+
+TEST_F(ScpiDialogueTest, ASetWithoutAPlaceForTheValueIsBadInput) {
+  device_.set = "CURR";
+  ScpiDialogue dialogue = opened();
+  const Status status = dialogue.set(1.0);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::kBadInput);
+}
+
+}  // namespace
+}  // namespace fogbench::drivers
