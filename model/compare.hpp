@@ -1,8 +1,16 @@
 #pragma once
-// Where a fitted (or held) model misses its measurements: residual per segment and per range of
-// each variable with a family-wise significance, worst first, each in a plain sentence with units;
-// and what changed between runs (test 1, test 2).
+// Where a fitted (or held) model misses its measurements: mean residual per segment, run and range
+// of each variable, with its significance under the noise, worst first, each in a plain sentence
+// with units; and what changed between runs (test 1, test 2).
+//
+//   mean residual of region g:  m_g = w_g'r
+//   cov(m) = W'(Omega - X (X'Omega^-1 X)^-1 X')W     (fitted; averaged over the plausible noise)
+//   cov(m) = W'Omega W                               (held: nothing was fitted away)
+//   p of the worst region: the share of draws of N(0, cov) whose largest |z| is at least its own
+//
+// With independent noise of unknown size the draws are divided by their own residual deviation.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,12 +21,13 @@
 namespace fogbench::model {
 
 struct Region {
-  std::string where;     ///< segment, or empty
+  std::string where;     ///< "segment coil_z/down", "run 2", or empty
   std::string variable;  ///< column name, or empty
   double from = 0.0, to = 0.0;
   std::size_t rows = 0;
-  double residual = 0.0;        ///< mean residual
-  double standard_error = 0.0;  ///< of that mean under the noise model
+  double observed = 0.0;        ///< means over the region's rows
+  double residual = 0.0;        ///< observed - model
+  double standard_error = 0.0;  ///< of that mean under the noise model; NaN when no noise is known
   double z = 0.0;
   double p_family_wise = 1.0;  ///< corrected for all regions looked at
   std::string says;
@@ -30,19 +39,27 @@ struct RunChange {
   double common_scale = 1.0;  ///< b = scale * a, weighted least squares over the magnetic terms
   double scale_standard_error = 0.0;
   double angle_deg = 0.0;  ///< between the two coefficient vectors
+  double p_repeat = 1.0;   ///< that both runs measured the same coefficients
+  bool scale_changed = false;
   std::string says;
 };
 
 struct Comparison {
   FitResult fit;
+  bool as_is = false;
   std::vector<Region> regions;  ///< worst first
   std::vector<RunChange> changes;
   std::vector<std::string> sentences;  ///< the conclusions, in the order to print them
-  double noise_floor = 0.0;            ///< RMS that the noise alone would leave
+  bool noise_known = false;            ///< from the table or the fit; else z and p mean nothing
+  double noise_floor = 0.0;            ///< RMS that the noise alone would leave; NaN when unknown
   double p_adequate = 1.0;             ///< of the worst region
 };
 
+/// The model is adequate unless p_adequate is below this.
+inline constexpr double kAdequate = 0.05;
+
+/// `seed` of the draws behind p_family_wise. Errors: those of fit().
 Result<Comparison> compare(const Table& table, const config::ModelFile& model,
-                           const FitOptions& options);
+                           const FitOptions& options, std::uint64_t seed = 1);
 
 }  // namespace fogbench::model
