@@ -62,12 +62,14 @@ Result<std::size_t> HidFarEnd::read_report(std::span<std::uint8_t> out,
     return line_.error(ErrorCode::kProtocol, fmt::format("a report has {} bytes, room for {}",
                                                          device_.report_bytes, out.size()));
   }
-  if (newest() <= last_read_) {
+  const drivers::Clock::Instant deadline = line_.clock().now() + timeout;
+  if (line_.fault(FaultKind::kTimeout)) {
+    line_.clock().sleep_until(deadline);
+  } else if (newest() <= last_read_) {
     const double next_s = static_cast<double>(last_read_ + 1) * device_.report_period.count();
     const auto wait = drivers::from_seconds(next_s - line_.plant().now_s());
     line_.clock().sleep_for(std::min(wait, timeout));
   }
-  if (line_.fault(FaultKind::kTimeout)) line_.clock().sleep_for(timeout);
   line_.plant().advance();
   const std::int64_t number = newest();
   if (number <= last_read_ || line_.fault(FaultKind::kTimeout)) {

@@ -6,13 +6,19 @@
 #include <cmath>
 #include <string_view>
 
+#include "config/place.hpp"
+
 namespace fogbench::simulator {
 namespace {
 
 Error unknown(const std::string& where, std::string_view what, const std::string& name,
               const std::vector<std::string_view>& known) {
-  return Error{ErrorCode::kBadInput, fmt::format("{}: unknown {} \"{}\"; known: {}", where, what,
-                                                 name, fmt::join(known, ", "))};
+  const std::string_view near = config::nearest_name(name, known);
+  const std::string hint = known.empty()  ? "it takes none"
+                           : near.empty() ? fmt::format("known: {}", fmt::join(known, ", "))
+                                          : fmt::format("did you mean \"{}\"?", near);
+  return Error{ErrorCode::kBadInput,
+               fmt::format("{}: unknown {} \"{}\"; {}", where, what, name, hint)};
 }
 
 Result<const EffectEntry*> find(const std::string& where, const std::string& id) {

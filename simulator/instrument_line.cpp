@@ -6,7 +6,8 @@ namespace fogbench::simulator {
 
 Status InstrumentLine::request(drivers::Clock::Duration takes, drivers::Clock::Duration timeout) {
   if (fault(FaultKind::kUnplug)) return error(ErrorCode::kDevice, "unplugged");
-  if (fault(FaultKind::kTimeout)) return wait_in_vain(timeout);
+  deadline_ = clock_.now() + timeout;
+  if (fault(FaultKind::kTimeout)) return wait_in_vain();
   constexpr int kSlowFactor = 20;
   if (fault(FaultKind::kSlowAnswer)) takes = std::min(kSlowFactor * takes, timeout * 9 / 10);
   clock_.sleep_for(takes);
@@ -14,9 +15,9 @@ Status InstrumentLine::request(drivers::Clock::Duration takes, drivers::Clock::D
   return {};
 }
 
-Status InstrumentLine::answer(drivers::Clock::Duration timeout) {
+Status InstrumentLine::answer() {
   if (fault(FaultKind::kLateAnswer) || fault(FaultKind::kSilentExecution)) {
-    return wait_in_vain(timeout);
+    return wait_in_vain();
   }
   if (fault(FaultKind::kBadChecksum)) {
     return error(ErrorCode::kProtocol, "the answer's check value is wrong");
@@ -24,8 +25,8 @@ Status InstrumentLine::answer(drivers::Clock::Duration timeout) {
   return {};
 }
 
-Status InstrumentLine::wait_in_vain(drivers::Clock::Duration timeout) {
-  clock_.sleep_for(timeout);
+Error InstrumentLine::wait_in_vain() {
+  clock_.sleep_until(deadline_);
   plant_->advance();
   return error(ErrorCode::kTimeout, "no answer");
 }

@@ -28,9 +28,11 @@ class InstrumentLine {
   /// On success the instrument executes it, on the plant of that moment. kDevice while unplugged,
   /// kTimeout after `timeout` while the instrument hears nothing.
   Status request(drivers::Clock::Duration takes, drivers::Clock::Duration timeout);
-  /// The answer travels back: kTimeout after the rest of `timeout` while answers are late or lost,
+  /// The answer travels back: kTimeout at the request's deadline while answers are late or lost,
   /// kProtocol while they arrive broken.
-  Status answer(drivers::Clock::Duration timeout);
+  Status answer();
+  /// kTimeout, at the deadline of the last request.
+  Error wait_in_vain();
 
   bool fault(FaultKind kind) const { return faults_.active(kind, plant_->now_s()); }
   Plant& plant() { return *plant_; }
@@ -44,11 +46,10 @@ class InstrumentLine {
   }
 
  private:
-  Status wait_in_vain(drivers::Clock::Duration timeout);
-
   std::string name_;
   std::shared_ptr<Plant> plant_;  // Shared: the last far end to go takes the plant with it.
   drivers::Clock& clock_;
+  drivers::Clock::Instant deadline_{};
   FaultSchedule faults_;
   RandomEngine random_;  ///< of garbage only
 };

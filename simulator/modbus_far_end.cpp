@@ -77,7 +77,7 @@ Status ModbusFarEnd::read_registers(std::uint16_t address, std::span<std::uint16
     encode(spec, out.subspan(i, words));
     i += words;
   }
-  return line_.answer(kTimeout);
+  return line_.answer();
 }
 
 Status ModbusFarEnd::write_registers(std::uint16_t address, std::span<const std::uint16_t> values) {
@@ -96,7 +96,7 @@ Status ModbusFarEnd::write_registers(std::uint16_t address, std::span<const std:
     if (Status s = apply(spec, *value); !s) return s;
     i += words;
   }
-  return line_.answer(kTimeout);
+  return line_.answer();
 }
 
 Status ModbusFarEnd::apply(const RegisterSpec& spec, double value) {

@@ -140,14 +140,13 @@ Result<std::string> ScpiFarEnd::read(drivers::Clock::Duration timeout) {
     answer_.reset();
     return s.error();
   }
-  if (Status s = line_.answer(timeout); !s) {
+  if (Status s = line_.answer(); !s) {
     answer_.reset();
     return s.error();
   }
   if (!answer_) {
     fail(-420, "Query UNTERMINATED");
-    line_.clock().sleep_for(timeout);
-    return line_.error(ErrorCode::kTimeout, "no answer");
+    return line_.wait_in_vain();
   }
   std::string text = *std::move(answer_);
   answer_.reset();
