@@ -13,7 +13,7 @@ fail() {
 
 # As many jobs as there are cores, but no more than fit into memory: the largest files (Ceres)
 # take about 1.2 GB of it while they compile, twice that with sanitizers.
-jobs() {
+job_count() {
   local kb_each=$1 cores memory_kb
   cores=$(nproc)
   memory_kb=$(sed -n 's/^MemAvailable: *\([0-9]*\) kB/\1/p' /proc/meminfo)

@@ -36,7 +36,7 @@ Violations unlisted_sources(const Tree& tree);
 /// C++ lives in the rooms and in tests/, nowhere else.
 Violations homeless_sources(const Tree& tree);
 /// Rooms ask the Clock for time (drivers/clock.* alone asks the machine), and draw random numbers
-/// from a seed.
+/// from a seed (daemon/session.cpp alone draws a seed that nobody gave, which the run log keeps).
 Violations machine_time_or_chance(const Tree& tree);
 /// Devices are commanded by the run engine alone.
 Violations commands_outside_the_engine(const Tree& tree);
