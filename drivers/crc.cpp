@@ -54,6 +54,7 @@ std::uint32_t Crc::of(std::span<const std::uint8_t> bytes) const {
     std::memcpy(&second, p + 8, sizeof second);
     first ^= state;
     state = 0;
+#pragma GCC unroll 8  // -O2 keeps the loop, at twice the time
     for (std::size_t i = 0; i < 8; ++i) {
       state ^= table_[15 - i][first >> (8 * i) & 0xff] ^ table_[7 - i][second >> (8 * i) & 0xff];
     }
