@@ -181,10 +181,12 @@ class Expander {
     return append(std::move(settle), path);
   }
   Status add(const config::Wait& s, const std::string& path) {
-    return append(Wait{Seconds{not_negative(s.duration_s, "duration_s")},
-                       Seconds{not_negative(s.operating_time_s, "operating_time_s")}, s.segment,
-                       Seconds{positive(s.window_s, "window_s")}},
-                  path);
+    Wait wait{Seconds{not_negative(s.duration_s, "duration_s")},
+              Seconds{not_negative(s.operating_time_s, "operating_time_s")}, s.segment,
+              Seconds{positive(s.window_s, "window_s")}};
+    // A parameter of 0 leaves the wait out.
+    if (wait.duration.count() == 0.0 && wait.operating_time.count() == 0.0) return {};
+    return append(std::move(wait), path);
   }
   Status add(const config::Average& s, const std::string& path) {
     return append(Average{Seconds{positive(s.duration_s, "duration_s")}, s.segment, false}, path);

@@ -1,8 +1,10 @@
 #pragma once
 // The time that a run has left: the plan's estimates, where those of the steps that wait for
-// evidence (settling) are scaled by how long such steps have really taken so far.
+// evidence are scaled by how long such steps have really taken so far. Coming near a temperature
+// and settling there are scaled apart: heaters and controller err in their own ways.
 
 #include <algorithm>
+#include <array>
 #include <variant>
 #include <vector>
 
@@ -16,36 +18,44 @@ class RemainingTime {
   explicit RemainingTime(const Plan& plan) : plan_(plan), after_(plan.steps.size() + 1) {
     for (std::size_t i = plan.steps.size(); i-- > 0;) {
       after_[i] = after_[i + 1];
-      (settles(i) ? after_[i].settling : after_[i].fixed) += plan.steps[i].estimate;
+      after_[i][kind_of(i)] += plan.steps[i].estimate;
     }
   }
 
   void step_ended(std::size_t step, Seconds took) {
-    if (!settles(step)) return;
-    estimated_ += plan_.steps[step].estimate;
-    took_ += took;
+    const Kind kind = kind_of(step);
+    if (kind == kFixed) return;
+    estimated_[kind] += plan_.steps[step].estimate;
+    took_[kind] += took;
   }
 
   /// `in_step`: how long the present step has lasted. Zero past the last step.
   Seconds remaining(std::size_t step, Seconds in_step) const {
     if (step >= plan_.steps.size()) return Seconds{0.0};
-    const double scale = estimated_.count() > 0.0 ? took_ / estimated_ : 1.0;
-    const Seconds present = (settles(step) ? scale : 1.0) * plan_.steps[step].estimate;
-    return std::max(Seconds{0.0}, present - in_step) + after_[step + 1].fixed +
-           scale * after_[step + 1].settling;
+    const Seconds present = scale(kind_of(step)) * plan_.steps[step].estimate;
+    Seconds left = std::max(Seconds{0.0}, present - in_step);
+    for (const Kind kind : {kFixed, kApproach, kSettling}) {
+      left += scale(kind) * after_[step + 1][kind];
+    }
+    return left;
   }
 
  private:
-  struct Sums {
-    Seconds fixed{0.0}, settling{0.0};
-  };
-  bool settles(std::size_t step) const {
-    return std::holds_alternative<SettleTemperature>(plan_.steps[step].action);
+  enum Kind { kFixed, kApproach, kSettling };
+  using Sums = std::array<Seconds, 3>;  ///< by kind
+
+  Kind kind_of(std::size_t step) const {
+    const auto* settle = std::get_if<SettleTemperature>(&plan_.steps[step].action);
+    if (settle == nullptr) return kFixed;
+    return settle->dwell.count() > 0.0 ? kSettling : kApproach;
+  }
+  double scale(Kind kind) const {
+    return estimated_[kind].count() > 0.0 ? took_[kind] / estimated_[kind] : 1.0;
   }
 
   const Plan& plan_;
-  std::vector<Sums> after_;             ///< of the steps from each on
-  Seconds estimated_{0.0}, took_{0.0};  ///< of the settling steps so far
+  std::vector<Sums> after_;  ///< estimates of the steps from each on
+  Sums estimated_{}, took_{};
 };
 
 }  // namespace fogbench::procedures

@@ -74,6 +74,17 @@ TEST(Expand, AnEmptyLoopIsNoSteps) {
   EXPECT_TRUE(steps->empty());
 }
 
+TEST(Expand, AWaitForNothingIsLeftOut) {
+  ProcedureConfig p = procedure("p", {step(config::Wait{0.0, "$warm_up_s", "", 60.0})});
+  p.parameters = {{"warm_up_s", 0.0}};
+  const auto none = expand(p, {}, no_other);
+  ASSERT_TRUE(none) << none.error().message;
+  EXPECT_TRUE(none->empty());
+  const auto one = expand(p, {{"warm_up_s", 60.0}}, no_other);
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(one->size(), 1U);
+}
+
 TEST(Expand, ASweepIsABlockOfItsLevelsWithBranches) {
   const auto steps = expand(
       procedure("p", {step(config::Sweep{Axis::kY, test::paper_levels(), 180.0, 5.0, "coil_y"}),
