@@ -2,9 +2,10 @@
 // The gyro at its serial line: frames at the frame rate, laid out as the instrument's description
 // says, with sequence and check value. Frame i is the mean over its own sample,
 //
-//   rate = Earth's rate on the axis + effects (of the plant's step) + noise (bin mean),
+//   rate = Earth's rate on the axis + effects + noise (bin mean),
 //
-// quantised, and goes out when the sample ends. Bytes come into being when they are read, up to the
+// quantised, and goes out when the sample ends. The effects are those of the plant's step that the
+// middle of the sample lies in. Bytes come into being when they are read, up to the
 // clock's present; nothing is stored but the frame that a read stopped in. Frames older than
 // Plant::kKeptS that nobody read are lost, as in a receive buffer that runs over.
 

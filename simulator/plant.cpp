@@ -41,8 +41,7 @@ Plant::Plant(const config::BenchConfig& bench, HiddenEffects effects,
       turntable_noise_(derive_seed(seed, "turntable")) {
   state_.step_s = step_s_;
   state_.reference_temperature_c = reference_temperature_c;
-  state_.temperature_c = thermal_.carrier_c();
-  state_.ambient_c = thermal_.ambient_c();
+  observe();
 }
 
 double Plant::now_s() const {
@@ -72,21 +71,24 @@ void Plant::step() {
   encoder_deg_ +=
       std::clamp(encoder_target_deg_ - encoder_deg_, -turn_deg_per_step_, turn_deg_per_step_);
 
+  state_.heater_w = power.total_w();
+  observe();
+  gyro_inputs_.push_back(
+      {config_.earth_rate_on_axis.value + effects_.advance(state_), thermal_.coil_c()});
+  forget_before(steps_ - static_cast<std::int64_t>(kKeptS / step_s_));
+}
+
+void Plant::observe() {
   state_.time_s = static_cast<double>(steps_) * step_s_;
   state_.temperature_c = thermal_.carrier_c();
   state_.temperature_rate_c_per_h = thermal_.carrier_rate_c_per_h();
   state_.temperature_acceleration_c_per_h2 = thermal_.carrier_acceleration_c_per_h2();
   state_.temperature_gradient_c = thermal_.gradient_c();
-  state_.heater_w = power.total_w();
   state_.ambient_c = thermal_.ambient_c();
   state_.azimuth_deg = encoder_deg_ + azimuth_error_deg_;
   state_.field_100ut = field_ut();
   for (double& h : state_.field_100ut) h /= 100.0;
   state_.sum_squared_current_a2 = magnetic_.sum_squared_current_a2();
-
-  gyro_inputs_.push_back(
-      {config_.earth_rate_on_axis.value + effects_.advance(state_), thermal_.coil_c()});
-  forget_before(steps_ - static_cast<std::int64_t>(kKeptS / step_s_));
 }
 
 void Plant::forget_before(std::int64_t step) {

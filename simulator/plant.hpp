@@ -70,6 +70,8 @@ class Plant {
   Plant(const config::BenchConfig& bench, HiddenEffects effects, double reference_temperature_c,
         std::uint64_t seed, const drivers::Clock& clock);
   void step();
+  /// Fills state_ from the parts.
+  void observe();
 
   const drivers::Clock& clock_;
   const drivers::Clock::Instant power_on_;

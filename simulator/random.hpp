@@ -1,7 +1,7 @@
 #pragma once
-// Seeded randomness, the same bit for bit on every machine. Each noise source owns a generator
-// whose seed is derived from the run's seed and the source's name, so that a new source or a fault
-// never changes the numbers of another.
+// Seeded randomness, repeatable bit for bit. Each noise source owns a generator whose seed is
+// derived from the run's seed and the source's name, so that a new source or a fault never changes
+// the numbers of another.
 
 #include <bit>
 #include <boost/random/normal_distribution.hpp>
@@ -11,9 +11,12 @@
 
 namespace fogbench::simulator {
 
-/// SplitMix64 (Steele, Lea, Flood 2014): the next state's well-mixed bits.
+inline constexpr std::uint64_t kGoldenGamma = 0x9E3779B97F4A7C15U;
+
+/// The output of SplitMix64 (Steele, Lea, Flood 2014) in state `x`; its next state is
+/// x + kGoldenGamma.
 constexpr std::uint64_t mix_bits(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15U;
+  x += kGoldenGamma;
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
   x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
   return x ^ (x >> 31U);
@@ -34,7 +37,10 @@ class RandomEngine {
  public:
   using result_type = std::uint64_t;
   explicit constexpr RandomEngine(std::uint64_t seed) {
-    for (std::uint64_t& word : state_) word = seed = mix_bits(seed);
+    for (std::uint64_t& word : state_) {
+      word = mix_bits(seed);
+      seed += kGoldenGamma;
+    }
   }
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }

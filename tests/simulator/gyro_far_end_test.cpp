@@ -102,23 +102,28 @@ TEST(GyroFarEnd, BytesDependNeitherOnHowMuchNorOnWhenIsRead) {
   config::ScenarioConfig scenario;
   scenario.noise = {0.005, 0.02, 0.02, 1e-6};
   scenario.terms = {{"temperature_linear", 0.1}};
-  TestFarEnds whole(test_bench(), scenario, 42);
-  whole.run_for(120.0);
-  const Bytes expected = read_all(whole, 1U << 20U);
-  ASSERT_EQ(expected.size(), 12000 * kFrame);
+  // The second rate has no whole number of frames in a step of the plant, the third less than one.
+  for (const double frame_rate_hz : {100.0, 128.7, 3.3}) {
+    const config::BenchConfig config = test_bench(frame_rate_hz);
+    TestFarEnds whole(config, scenario, 42);
+    whole.run_for(120.0);
+    const Bytes expected = read_all(whole, 1U << 20U);
+    ASSERT_EQ(expected.size(),
+              static_cast<std::size_t>(std::lround(120.0 * frame_rate_hz)) * kFrame);
 
-  TestFarEnds pieces(test_bench(), scenario, 42);
-  Bytes found;
-  for (int i = 0; i < 1200; ++i) {
-    pieces.run_for(0.1);
-    const Bytes some = read_all(pieces, 1 + static_cast<std::size_t>(i) % 101);
-    found.insert(found.end(), some.begin(), some.end());
+    TestFarEnds pieces(config, scenario, 42);
+    Bytes found;
+    for (int i = 0; i < 1200; ++i) {
+      pieces.run_for(0.1);
+      const Bytes some = read_all(pieces, 1 + static_cast<std::size_t>(i) % 101);
+      found.insert(found.end(), some.begin(), some.end());
+    }
+    EXPECT_TRUE(found == expected) << frame_rate_hz;
+
+    TestFarEnds other(config, scenario, 43);
+    other.run_for(120.0);
+    EXPECT_FALSE(read_all(other) == expected) << frame_rate_hz;
   }
-  EXPECT_EQ(found, expected);
-
-  TestFarEnds other(test_bench(), scenario, 43);
-  other.run_for(120.0);
-  EXPECT_NE(read_all(other), expected);
 }
 
 TEST(GyroFarEnd, AReaderThatWasAwayFindsTheLastTenMinutes) {
