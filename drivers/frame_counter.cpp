@@ -36,14 +36,19 @@ void FrameCounter::settle(std::optional<Clock::Instant> empty_at, std::int64_t p
   const std::size_t first = block.index.size() - entries;
   const std::int64_t turns = empty_at ? missing_turns(*empty_at, periods_since) : 0;
   if (turns != 0) {
-    for (std::size_t i = first + jump_entry_; i < block.index.size(); ++i)
+    for (std::size_t i = first + jump_entry_; i < block.index.size(); ++i) {
       block.index[i] += turns * modulus_;
+    }
     last_index_ += turns * modulus_;
   }
   std::size_t repeated = 0;
-  if (has_repeats_ || turns < 0) repeated = remove_repeats(first, settled_index_, block);
+  const bool goes_back = entries > 0 && block.index[first] <= settled_index_;
+  if (has_repeats_ || goes_back || turns < 0) {
+    repeated = remove_repeats(first, settled_index_, block);
+  }
 
   settled_index_ = std::max(settled_index_, last_index_);
+  if (repeated < entries) settled_index_ = std::max(settled_index_, block.index.back());
   statistics.frames_repeated += repeated;
   statistics.frames_good += entries - repeated;
   statistics.frames_missing =

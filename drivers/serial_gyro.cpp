@@ -12,8 +12,9 @@ using namespace std::chrono_literals;
 /// A gyro sends without pause: ten periods of the slowest instrument (10 Hz) are silence.
 constexpr Clock::Duration kLongestSilence = 1s;
 
-/// A line that never runs empty must not hold the caller for ever. Eight minutes at 1 kHz.
-constexpr std::size_t kMostBytesPerRead = std::size_t{16} << 20;
+/// A line that never runs empty must not hold the caller for ever: no more is taken at once than
+/// this, and twice what is due since the last time.
+constexpr std::size_t kMostBytes = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -22,9 +23,11 @@ SerialGyro::SerialGyro(std::string name, const config::GyroConfig& config,
     : name_(std::move(name)),
       identity_(config.device.name),
       frame_rate_hz_(config.device.frame_rate_hz),
+      bytes_per_s_(config.device.frame_rate_hz * config.device.frame_bytes),
       transport_(std::move(transport)),
       clock_(clock),
-      parser_(config.device) {}
+      parser_(config.device),
+      last_read_(clock.now()) {}
 
 Result<std::unique_ptr<SerialGyro>> SerialGyro::open(std::string name,
                                                      const config::GyroConfig& config,
@@ -40,7 +43,7 @@ Result<std::unique_ptr<SerialGyro>> SerialGyro::open(std::string name,
 }
 
 Status SerialGyro::wait_for_first_frame() {
-  for (std::size_t discarded = 0; discarded < kMostBytesPerRead;) {
+  for (std::size_t discarded = 0; discarded < kMostBytes;) {
     const auto count = transport_->read_some(parser_.space());
     if (!count) return named(name_, count.error());
     if (*count == 0) break;
@@ -62,7 +65,9 @@ Status SerialGyro::read(GyroBlock& out) {
   const std::uint64_t good_before = parser_.statistics().frames_good;
   Status failure;
   bool empty = false;
-  for (std::size_t total = 0; total < kMostBytesPerRead && !empty;) {
+  const double due_bytes = to_seconds(clock_.now() - last_read_) * bytes_per_s_;
+  const std::size_t most = kMostBytes + static_cast<std::size_t>(2.0 * due_bytes);
+  for (std::size_t total = 0; total < most && !empty;) {
     const auto count = transport_->read_some(parser_.space());
     if (!count) {
       failure = named(name_, count.error());
@@ -73,7 +78,7 @@ Status SerialGyro::read(GyroBlock& out) {
     bytes_since_good_ += *count;
     empty = *count == 0;
   }
-  const Clock::Instant now = clock_.now();
+  const Clock::Instant now = last_read_ = clock_.now();
   parser_.settle(empty ? std::optional(now) : std::nullopt, out);
   if (!failure) return failure;
   if (parser_.statistics().frames_good > good_before) {

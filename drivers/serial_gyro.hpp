@@ -38,11 +38,13 @@ class SerialGyro final : public Gyro {
   std::string name_;
   std::string identity_;
   double frame_rate_hz_;
+  double bytes_per_s_;
   std::unique_ptr<SerialTransport> transport_;
   Clock& clock_;
   FrameParser parser_;
   Clock::Instant first_sample_{};  ///< middle of the sample with index 0
-  Clock::Instant last_good_{};     ///< when a good frame was last received
+  Clock::Instant last_read_;
+  Clock::Instant last_good_{};  ///< when a good frame was last received
   std::size_t bytes_since_good_ = 0;
 };
 

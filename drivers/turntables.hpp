@@ -40,8 +40,7 @@ class ScpiTurntable final : public Turntable {
 class ManualTurntable final : public Turntable {
  public:
   /// The gyro is mounted at azimuth 0. `asked` must outlive the turntable.
-  ManualTurntable(std::string name, Operator& asked)
-      : name_(std::move(name)), operator_(asked) {}
+  ManualTurntable(std::string name, Operator& asked) : name_(std::move(name)), operator_(asked) {}
 
   Result<std::string> identity() override { return std::string("turned by the operator"); }
   /// Asks for it and believes the answer; kAborted when the operator declines. Asks for nothing

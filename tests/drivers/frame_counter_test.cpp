@@ -9,7 +9,7 @@ namespace fogbench::drivers {
 namespace {
 
 /// A gyro at 1 kHz whose frames each carry the true index as their rate, read now and then.
-class CounterTest : public testing::Test {
+class FrameCounterTest : public testing::Test {
  protected:
   /// Frames first ... last arrive.
   void receive(std::int64_t first, std::int64_t last, std::int64_t skipped = 0) {
@@ -37,7 +37,7 @@ class CounterTest : public testing::Test {
   std::size_t entries_ = 0;
 };
 
-TEST_F(CounterTest, ASilenceOfExactlySomeTurnsIsNotInvisible) {
+TEST_F(FrameCounterTest, ASilenceOfExactlySomeTurnsIsNotInvisible) {
   for (const std::int64_t turns : {1, 2, 7, 100}) {
     FrameCounter fresh{128, 1000.0};
     std::swap(counter_, fresh);
@@ -55,7 +55,7 @@ TEST_F(CounterTest, ASilenceOfExactlySomeTurnsIsNotInvisible) {
   }
 }
 
-TEST_F(CounterTest, AnySilenceOfAnyLengthKeepsIndexAndTimeTogether) {
+TEST_F(FrameCounterTest, AnySilenceOfAnyLengthKeepsIndexAndTimeTogether) {
   for (std::int64_t lost = 1; lost < 700; ++lost) {
     FrameCounter fresh{128, 1000.0};
     std::swap(counter_, fresh);
@@ -70,7 +70,7 @@ TEST_F(CounterTest, AnySilenceOfAnyLengthKeepsIndexAndTimeTogether) {
   }
 }
 
-TEST_F(CounterTest, ALineThatFallsSilentWithinAReadDoesNotMoveItsLastFrames) {
+TEST_F(FrameCounterTest, ALineThatFallsSilentWithinAReadDoesNotMoveItsLastFrames) {
   receive(0, 999);
   settle_at(1.0);
   receive(1000, 1299);  // then silence until 5.5 s
@@ -81,7 +81,7 @@ TEST_F(CounterTest, ALineThatFallsSilentWithinAReadDoesNotMoveItsLastFrames) {
   EXPECT_EQ(block_.index.size(), 1800u);
 }
 
-TEST_F(CounterTest, ASilenceInsideOneReadIsPutAtItsJump) {
+TEST_F(FrameCounterTest, ASilenceInsideOneReadIsPutAtItsJump) {
   receive(0, 999);
   settle_at(1.0);
   receive(1000, 1299);
@@ -90,7 +90,7 @@ TEST_F(CounterTest, ASilenceInsideOneReadIsPutAtItsJump) {
   expect_aligned();
 }
 
-TEST_F(CounterTest, AWholeTurnLostInsideOneReadShowsInTheNext) {
+TEST_F(FrameCounterTest, AWholeTurnLostInsideOneReadShowsInTheNext) {
   receive(0, 999);
   settle_at(1.0);
   receive(1000, 1299);
@@ -102,7 +102,7 @@ TEST_F(CounterTest, AWholeTurnLostInsideOneReadShowsInTheNext) {
   EXPECT_EQ(statistics_.frames_missing, 128u);
 }
 
-TEST_F(CounterTest, DamagedFramesAreNoSilence) {
+TEST_F(FrameCounterTest, DamagedFramesAreNoSilence) {
   receive(0, 999);
   settle_at(1.0);
   receive(1300, 1999, 300);  // the bytes of 300 frames were thrown away: two turns and 44
@@ -110,7 +110,7 @@ TEST_F(CounterTest, DamagedFramesAreNoSilence) {
   expect_aligned();
 }
 
-TEST_F(CounterTest, DamagedFramesAtTheEndOfAReadAreNoSilence) {
+TEST_F(FrameCounterTest, DamagedFramesAtTheEndOfAReadAreNoSilence) {
   receive(0, 999);
   settle_at(1.0);
   receive(1000, 1499);
@@ -120,7 +120,7 @@ TEST_F(CounterTest, DamagedFramesAtTheEndOfAReadAreNoSilence) {
   expect_aligned();
 }
 
-TEST_F(CounterTest, FramesThatCameBeforeAreRepeatsNotAnotherTurn) {
+TEST_F(FrameCounterTest, FramesThatCameBeforeAreRepeatsNotAnotherTurn) {
   receive(0, 999);
   settle_at(1.0);
   receive(1000, 1499);
@@ -134,7 +134,21 @@ TEST_F(CounterTest, FramesThatCameBeforeAreRepeatsNotAnotherTurn) {
   EXPECT_EQ(statistics_.frames_missing, 0u);
 }
 
-TEST_F(CounterTest, AStuckSequenceNumberYieldsNothingHoweverLongItLasts) {
+TEST_F(FrameCounterTest, RepeatsThatGoOnInTheNextReadAreRepeatsToo) {
+  receive(0, 999);
+  settle_at(1.0);
+  receive(1000, 1499);
+  receive(1400, 1449);
+  settle_at(1.5);
+  receive(1450, 1999);
+  settle_at(2.0);
+  expect_aligned();
+  EXPECT_EQ(block_.index.size(), 2000u);
+  EXPECT_EQ(statistics_.frames_repeated, 100u);
+  EXPECT_EQ(statistics_.frames_missing, 0u);
+}
+
+TEST_F(FrameCounterTest, AStuckSequenceNumberYieldsNothingHoweverLongItLasts) {
   receive(0, 999);
   settle_at(1.0);
   for (int second = 2; second <= 5; ++second) {
@@ -150,7 +164,7 @@ TEST_F(CounterTest, AStuckSequenceNumberYieldsNothingHoweverLongItLasts) {
   EXPECT_EQ(statistics_.frames_missing, 4500u);
 }
 
-TEST_F(CounterTest, JitterAndASlowOscillatorDoNotMoveTheIndex) {
+TEST_F(FrameCounterTest, JitterAndASlowOscillatorDoNotMoveTheIndex) {
   // 100 ppm slow and 30 ms late at random, for an hour: 360 periods of drift in all.
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> late(0.0, 0.03);
@@ -165,7 +179,7 @@ TEST_F(CounterTest, JitterAndASlowOscillatorDoNotMoveTheIndex) {
   EXPECT_EQ(statistics_.frames_missing, 0u);
 }
 
-TEST_F(CounterTest, AFastOscillatorDoesNotMoveTheIndexEither) {
+TEST_F(FrameCounterTest, AFastOscillatorDoesNotMoveTheIndexEither) {
   std::int64_t next = 0;
   for (int second = 1; second <= 3600; ++second) {
     const auto arrived = static_cast<std::int64_t>(second * 1000.0 * (1.0 + 1e-3));

@@ -165,8 +165,7 @@ TEST_F(OpenBenchTest, ATurntableOfTheOperatorsHandNeedsNoTransport) {
 
 TEST_F(OpenBenchTest, TheIndexStaysWithTheClockThroughASilenceOfWholeTurns) {
   // At 100 Hz, 5.12 s are four turns of the sequence number: it goes on as if nothing was lost.
-  scenario_.faults = {
-      {"gyro", FaultKind::kTimeout, config::Seconds{20.0}, config::Seconds{5.12}}};
+  scenario_.faults = {{"gyro", FaultKind::kTimeout, config::Seconds{20.0}, config::Seconds{5.12}}};
   const auto bench = open();
   ASSERT_TRUE(bench) << bench.error().message;
   GyroBlock block;
