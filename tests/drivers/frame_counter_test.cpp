@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <random>
 
 namespace fogbench::drivers {
@@ -162,6 +163,32 @@ TEST_F(FrameCounterTest, AStuckSequenceNumberYieldsNothingHoweverLongItLasts) {
   EXPECT_EQ(block_.index.size(), 1500u);
   EXPECT_EQ(statistics_.frames_repeated, 4500u);
   EXPECT_EQ(statistics_.frames_missing, 4500u);
+}
+
+TEST_F(FrameCounterTest, WhateverTheLineDoesTheIndexOnlyRises) {
+  std::mt19937_64 random(11);
+  const auto below = [&](std::uint64_t limit) {
+    return static_cast<std::int64_t>(random() % limit);
+  };
+  receive(0, 0);
+  std::int64_t next = 1;
+  double now_s = 0.001;
+  for (int read = 0; read < 3000; ++read) {
+    for (std::int64_t part = below(4); part > 0; --part) {
+      if (below(5) == 0) next = std::max<std::int64_t>(0, next + below(600) - 300);
+      const std::int64_t count = below(200);
+      receive(next, next + count, below(3) == 0 ? below(300) : 0);
+      next += count + 1;
+    }
+    now_s += 0.001 * static_cast<double>(below(700));
+    settle_at(now_s, below(10));
+    ASSERT_EQ(statistics_.frames_good, block_.index.size());
+    ASSERT_LE(block_.index.size(), static_cast<std::size_t>(block_.index.back() + 1));
+    ASSERT_GE(statistics_.frames_good + statistics_.frames_missing,
+              static_cast<std::uint64_t>(block_.index.back() + 1));
+  }
+  EXPECT_TRUE(std::adjacent_find(block_.index.begin(), block_.index.end(),
+                                 std::greater_equal<>()) == block_.index.end());
 }
 
 TEST_F(FrameCounterTest, JitterAndASlowOscillatorDoNotMoveTheIndex) {
