@@ -7,6 +7,13 @@
 
 namespace fogbench::config {
 
+bool is_identifier(std::string_view name) {
+  return !name.empty() && name.front() >= 'a' && name.front() <= 'z' &&
+         std::all_of(name.begin(), name.end(), [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+         });
+}
+
 std::string expectation(std::string_view kind, const Rule& rule) {
   const bool low = std::isfinite(rule.minimum);
   const bool high = std::isfinite(rule.maximum);

@@ -31,6 +31,13 @@
 
 namespace fogbench::config {
 
+/// The name of an effect, of a parameter: small letters, digits and underscores, a letter first.
+bool is_identifier(std::string_view name);
+inline constexpr std::string_view kIdentifier =
+    "a name of small letters, digits and underscores, a letter first";
+inline constexpr std::string_view kIdentifierExpected =
+    "this key names something; expected small letters, digits and underscores, a letter first";
+
 /// One name of an enumeration; the list is found by overload: enum_names(HeatingMode{}).
 template <class E>
 struct EnumName {

@@ -43,9 +43,6 @@ struct Codec<NoiseChoice> {
   static ordered_json write(const NoiseChoice& choice);
 };
 
-/// The identifier of an effect: small letters, digits and underscores.
-bool check_identifier(const Place& at, std::string_view name);
-
 template <class Visitor>
 void describe(Visitor& v, HiddenEffect& h) {
   v.required("effect", h.effect, "Identifier of the effect, as in `fogbench effects`.");

@@ -22,7 +22,7 @@ Result<fs::path> config_directory() {
     const fs::path folder = executable.parent_path();
     for (const fs::path& candidate :
          {folder / "../../config", folder / "../share/fogbench/config"}) {
-      if (fs::is_directory(candidate / "procedures", error)) return fs::weakly_canonical(candidate);
+      if (fs::is_directory(candidate / "benches", error)) return fs::weakly_canonical(candidate);
     }
   }
   return Error{ErrorCode::kBadInput,

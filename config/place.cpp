@@ -91,7 +91,7 @@ bool Place::fail(const Error& error) const {
 std::string_view nearest_name(std::string_view name, const std::vector<std::string_view>& known) {
   if (name.size() > 64) return {};
   std::string_view nearest;
-  std::size_t fewest = std::max<std::size_t>(1, name.size() / 3) + 1;
+  std::size_t fewest = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const std::string_view candidate : known) {
     const std::size_t edits = edits_between(name, candidate);
     if (edits < fewest) {

@@ -51,7 +51,8 @@ class Place {
   std::size_t index_ = 0;
 };
 
-/// The known name that is most like `name`, empty when none is near (a third of its letters).
+/// The known name that is most like `name`, empty when none is near (two edits, or a third of its
+/// letters).
 std::string_view nearest_name(std::string_view name, const std::vector<std::string_view>& known);
 
 }  // namespace fogbench::config

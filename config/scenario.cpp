@@ -33,14 +33,6 @@ Result<NoiseCoefficients> noise_grade(const std::string& name) {
                                                  one_line(name), known)};
 }
 
-bool check_identifier(const Place& at, std::string_view name) {
-  const bool good = !name.empty() && name.front() >= 'a' && name.front() <= 'z' &&
-                    std::all_of(name.begin(), name.end(), [](char c) {
-                      return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-                    });
-  return good || at.wrong("an identifier of small letters, digits and underscores");
-}
-
 bool Codec<NoiseChoice>::read(const Place& at, NoiseChoice& out, const Rule& /*rule*/) {
   if (at.value().is_object()) return Codec<NoiseCoefficients>::read(at, out.noise, {});
   if (!at.value().is_string()) return at.wrong("a grade's name or an object");
@@ -61,7 +53,7 @@ ordered_json Codec<NoiseChoice>::write(const NoiseChoice& choice) {
 }
 
 bool check(const Place& at, const HiddenEffect& h) {
-  return check_identifier(at / "effect", h.effect);
+  return is_identifier(h.effect) || (at / "effect").wrong(kIdentifier);
 }
 
 bool check(const Place& at, const FaultSpec& f) {
@@ -70,9 +62,10 @@ bool check(const Place& at, const FaultSpec& f) {
 }
 
 bool check(const Place& at, const ScenarioConfig& s) {
-  const Place terms = at / "gyro";
+  const Place gyro = at / "gyro";
+  const Place terms = gyro / "terms";
   for (const auto& [effect, coefficient] : s.terms) {
-    if (!check_identifier(terms / "terms" / effect, effect)) return false;
+    if (!is_identifier(effect)) return (terms / effect).fail(kIdentifierExpected);
   }
   for (std::size_t i = 1; i < s.magnetic_scale.size(); ++i) {
     if (s.magnetic_scale[i].at <= s.magnetic_scale[i - 1].at) {

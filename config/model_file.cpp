@@ -1,0 +1,76 @@
+#include "config/model_file.hpp"
+
+#include "config/describe_model.hpp"
+
+namespace fogbench::config {
+
+bool Codec<Covariance>::read(const Place& at, Covariance& out, const Rule& /*rule*/) {
+  if (!at.value().is_array()) return at.wrong("a list of rows");
+  const std::size_t size = at.value().size();
+  out.rows.assign(size, std::vector<double>(size));
+  for (std::size_t i = 0; i < size; ++i) {
+    const Place row = at / i;
+    if (!row.value().is_array() || row.value().size() != size) {
+      return row.wrong(fmt::format("a list of {}, as many as there are rows", size));
+    }
+    for (std::size_t j = 0; j < size; ++j) {
+      const Place entry = row / j;
+      if (entry.value().is_null()) {
+        out.rows[i][j] = std::numeric_limits<double>::quiet_NaN();
+      } else if (!read_number(entry, out.rows[i][j], {})) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+ordered_json Codec<Covariance>::schema(const Rule& /*rule*/) {
+  const ordered_json entry = {{"type", {"number", "null"}}};
+  return {{"type", "array"}, {"items", {{"type", "array"}, {"items", entry}}}};
+}
+
+ordered_json Codec<Covariance>::write(const Covariance& covariance) {
+  return Codec<std::vector<std::vector<double>>>::write(covariance.rows);
+}
+
+bool check(const Place& at, const ModelTerm& t) {
+  if (!is_identifier(t.effect)) return (at / "effect").wrong(kIdentifier);
+  if (t.coefficient && !t.coefficients.empty()) {
+    return (at / "coefficients").fail("stands beside \"coefficient\"; expected one of them");
+  }
+  if (t.fixed && !t.coefficient && t.coefficients.empty()) {
+    return (at / "fixed").wrong("a coefficient beside it, that it holds");
+  }
+  return true;
+}
+
+bool check(const Place& at, const FitRecord& f) {
+  return f.parameter_names.size() == f.covariance.size() ||
+         (at / "covariance")
+             .wrong(
+                 fmt::format("{} rows, one for each of parameter_names", f.parameter_names.size()));
+}
+
+bool check(const Place& at, const ModelFile& m) {
+  const Place terms = at / "terms";
+  for (std::size_t i = 0; i < m.terms.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (m.terms[i].effect == m.terms[j].effect) {
+        return (terms / i / "effect")
+            .wrong(fmt::format("an effect once; it stands in term {} already", j));
+      }
+    }
+  }
+  return true;
+}
+
+Result<ModelFile> load_model(const std::filesystem::path& file) {
+  return read_config<ModelFile>(file);
+}
+
+std::string to_json_text(const ModelFile& model) {
+  return pretty_json(Codec<ModelFile>::write(model));
+}
+
+}  // namespace fogbench::config

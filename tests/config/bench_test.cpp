@@ -1,0 +1,117 @@
+#include "config/bench.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/config/changed_file.hpp"
+
+namespace fogbench::config {
+namespace {
+
+using testing::HasSubstr;
+
+struct Mistake {
+  const char* patch;
+  const char* message;
+};
+
+class BenchMistakes : public testing::TestWithParam<Mistake> {};
+
+TEST_P(BenchMistakes, AreNamed) {
+  ChangedFile file;
+  const auto bench = load_bench(file.patch("benches/simulated.json", GetParam().patch));
+  EXPECT_THAT(message_of(bench), HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BenchMistakes,
+    testing::Values(
+        Mistake{R"([{"op": "replace", "path": "/gyro/device", "value": "../devices/none.json"}])",
+                "changed.json: /gyro/device: "},
+        Mistake{
+            R"([{"op": "replace", "path": "/gyro/device", "value": "../devices/coil-kepco.json"}])",
+            "/gyro/device: names a device of the wrong kind for this instrument"},
+        Mistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "ttyUSB0"}])",
+                "/gyro/connection: found \"ttyUSB0\", expected \"simulated\", or an address"},
+        Mistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "tty:"}])",
+                "/gyro/connection: found \"tty:\""},
+        Mistake{
+            R"([{"op": "replace", "path": "/thermostat/calibrated_on", "value": "2026-02-30"}])",
+            "/thermostat/calibrated_on: found \"2026-02-30\", expected a date, YYYY-MM-DD"},
+        Mistake{R"([{"op": "replace", "path": "/thermostat/calibration_due", "value": "soon"}])",
+                "/thermostat/calibration_due: found \"soon\""},
+        Mistake{R"([{"op": "replace", "path": "/coil_vertical/current_limit_a", "value": 6.5}])",
+                "/coil_vertical/current_limit_a: found 6.5, expected at most 6 A"},
+        Mistake{R"([{"op": "replace", "path": "/coil_vertical/device",
+                     "value": "../devices/turntable-scpi.json"}])",
+                "/coil_vertical/device: sets deg; expected a supply that sets A"},
+        Mistake{R"([{"op": "replace", "path": "/turntable/device",
+                     "value": "../devices/coil-kepco.json"}])",
+                "/turntable/device: sets A; expected a turntable that sets deg"},
+        Mistake{R"([{"op": "replace", "path": "/turntable/motorised", "value": false}])",
+                "/turntable/device: found \"../devices/turntable-scpi.json\", expected none"},
+        Mistake{R"([{"op": "remove", "path": "/turntable/device"}])",
+                "/turntable/device: found nothing, expected a device file"},
+        Mistake{R"([{"op": "replace", "path": "/gyro/frame_rate_hz", "value": 2600}])",
+                "/gyro/frame_rate_hz: found 2600, expected at most 2560.0"},
+        Mistake{R"([{"op": "replace", "path": "/gyro/max_gap_s", "value": 0.001}])",
+                "/gyro/max_gap_s: found 0.001, expected at least one frame, 0.01 s"},
+        Mistake{R"([{"op": "replace", "path": "/limits/temperature_minimum_c", "value": 60}])",
+                "/limits/temperature_minimum_c: found 60, expected less than"},
+        Mistake{R"([{"op": "replace", "path": "/limits/temperature_maximum_c", "value": 71}])",
+                "expected at most the thermostat's target_maximum_c 70"},
+        Mistake{R"([{"op": "replace", "path": "/simulation/magnetic/sensor_matrix",
+                     "value": [[1, 0, 0], [1, 0, 0], [0, 0, 1]]}])",
+                "/simulation/magnetic/sensor_matrix: cannot be inverted"}));
+
+TEST(LoadBench, ErrorInADeviceFileNamesThatFile) {
+  support::TemporaryFolder folder;
+  const auto device = folder.file("gyro.json", R"({"kind": "frame", "nmae": "x"})");
+  ChangedFile file;
+  const auto bench = load_bench(file.patch(
+      "benches/simulated.json",
+      R"([{"op": "replace", "path": "/gyro/device", "value": ")" + device.string() + R"("}])"));
+  EXPECT_EQ(message_of(bench), device.string() + ": /nmae: unknown key; did you mean \"name\"?");
+}
+
+TEST(LoadBench, CertificateOfTheBenchReplacesTheDeviceFilesCalibration) {
+  ChangedFile file;
+  const auto without = load_bench(file.patch(
+      "benches/simulated.json", R"([{"op": "remove", "path": "/magnetometer/calibration"}])"));
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_EQ(without->magnetometer.device.calibration_offset_ut[0], 0.0);
+  EXPECT_EQ(
+      load_bench(kReady / "benches/simulated.json")->magnetometer.device.calibration_offset_ut[0],
+      0.022);
+}
+
+/// The certificate takes the simulated magnetometer's errors of tenths of a percent down to 0.01 %
+/// and a few nT, and no further: a calibration has an uncertainty of its own.
+TEST(LoadBench, CertificateOfTheSimulatedMagnetometerLeavesASmallResidual) {
+  for (const char* name : {"benches/simulated.json", "benches/simulated-1khz.json"}) {
+    const auto bench = load_bench(kReady / name);
+    ASSERT_TRUE(bench) << bench.error().message;
+    const auto& device = bench->magnetometer.device;
+    const MagneticPlant& plant = bench->simulation.magnetic;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        double product = i == j ? -1.0 : 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          product += device.calibration_matrix[i][k] * plant.sensor_matrix[k][j];
+        }
+        largest = std::max(largest, std::abs(product));
+      }
+      const double offset = std::abs(plant.sensor_offset_ut[i] - device.calibration_offset_ut[i]);
+      EXPECT_GT(offset, 0.0005);
+      EXPECT_LT(offset, 0.005);
+    }
+    EXPECT_GT(largest, 0.5e-4);
+    EXPECT_LT(largest, 1.5e-4);
+  }
+}
+
+}  // namespace
+}  // namespace fogbench::config
