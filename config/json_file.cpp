@@ -119,6 +119,19 @@ class TreeBuilder final : public nlohmann::json_sax<json> {
   std::optional<Error> error_;
 };
 
+/// Length of the printable character that the text starts with, in UTF-8; 0 when it is none.
+std::size_t printable_prefix(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text.front());
+  if (lead < 0x80) return lead >= ' ' && lead != 0x7f ? 1 : 0;
+  const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : lead >= 0xc2 ? 2 : 0;
+  if (length == 0 || lead > 0xf4 || length > text.size()) return 0;
+  const std::string_view tail = text.substr(1, length - 1);
+  const bool whole = std::all_of(tail.begin(), tail.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0U) == 0x80;
+  });
+  return whole ? length : 0;
+}
+
 /// Appends `value`; on one line when it fits into what is left of it.
 void append(std::string& out, const nlohmann::ordered_json& value, std::size_t indent,
             std::size_t column);
@@ -208,8 +221,12 @@ std::string pretty_json(const nlohmann::ordered_json& value) {
 
 std::string one_line(std::string_view text, std::size_t limit) {
   std::string out;
-  for (const char c : text.substr(0, limit)) out += (c >= ' ' && c < '\x7f') ? c : '?';
-  if (text.size() > limit) out += "...";
+  while (!text.empty() && out.size() < limit) {
+    const std::size_t length = printable_prefix(text);
+    out += length > 0 ? text.substr(0, length) : "?";
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  if (!text.empty()) out += "...";
   return out;
 }
 

@@ -25,7 +25,8 @@ Result<nlohmann::json> read_json_file(const std::filesystem::path& file);
 /// Numbers have the shortest digits that read back exactly.
 std::string pretty_json(const nlohmann::ordered_json& value);
 
-/// At most `limit` bytes of a text that may be anything, on one line: for quoting in messages.
+/// The beginning of a text that may be anything, `limit` bytes or a few more, for quoting in a
+/// message: what is not printable in UTF-8 becomes a question mark.
 std::string one_line(std::string_view text, std::size_t limit = 80);
 
 }  // namespace fogbench::config

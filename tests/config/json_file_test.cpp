@@ -76,6 +76,9 @@ TEST(JsonFile, PrettyTextKeepsShortThingsOnALine) {
 TEST(OneLine, QuotesAnythingShortAndPrintable) {
   EXPECT_EQ(one_line("a\nb\x01"), "a?b?");
   EXPECT_EQ(one_line(std::string(100, 'x'), 3), "xxx...");
+  EXPECT_EQ(one_line("21 \u00b0C"), "21 \u00b0C");
+  EXPECT_EQ(one_line("\xb0 \xff \xe2\x82"), "? ? ??");
+  EXPECT_EQ(one_line(""), "");
 }
 
 }  // namespace
