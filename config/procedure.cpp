@@ -79,11 +79,11 @@ ordered_json Codec<NumberList>::schema(const Rule& rule) {
 bool Codec<ParameterValue>::read(const Place& at, ParameterValue& out, const Rule& /*rule*/) {
   if (at.value().is_number()) return read_number(at, out.emplace<double>(), {});
   if (!at.value().is_array()) return at.wrong("a number or a list of numbers");
-  return Codec<std::vector<double>>::read(at, out.emplace<std::vector<double>>(), not_empty());
+  return Codec<std::vector<double>>::read(at, out.emplace<std::vector<double>>(), {});
 }
 
 ordered_json Codec<ParameterValue>::schema(const Rule& /*rule*/) {
-  return {{"anyOf", {schema_of<double>(), schema_of<std::vector<double>>(not_empty())}}};
+  return {{"anyOf", {schema_of<double>(), schema_of<std::vector<double>>()}}};
 }
 
 ordered_json Codec<ParameterValue>::write(const ParameterValue& value) {

@@ -8,6 +8,7 @@
 #include "config/bench.hpp"
 #include "config/limits.hpp"
 #include "config/model_file.hpp"
+#include "config/procedure.hpp"
 #include "config/scenario.hpp"
 #include "tests/support/source_tree.hpp"
 
@@ -34,6 +35,7 @@ TEST(ReadyFiles, AreRead) {
   expect_all_are_read("devices", load_device);
   expect_all_are_read("benches", load_bench);
   expect_all_are_read("scenarios", load_scenario);
+  expect_all_are_read("procedures", load_procedure);
   expect_all_are_read("models", load_model);
   expect_all_are_read("limits", load_limits);
 }
