@@ -109,7 +109,23 @@ void describe(Visitor& v, BenchLimits& l) {
   v.optional("temperature_minimum_c", l.temperature_minimum, "Lowest temperature of the gyro.");
   v.optional("temperature_maximum_c", l.temperature_maximum, "Highest temperature of the gyro.");
   v.optional("field_maximum_ut", l.field_maximum, "Largest field along any axis.", above(0));
+  v.optional("compensation_maximum_ut", l.compensation_maximum,
+             "Largest ambient field to null along one axis; a sweep's current is checked with it.",
+             at_least(0));
+  v.optional("sensor_disagreement_c", l.sensor_disagreement,
+             "A control sensor farther from the working ones is warned of.", above(0));
   v.optional("run_time_maximum_s", l.run_time_maximum, "Longest run.", above(0));
+}
+
+template <class Visitor>
+void describe(Visitor& v, EstimateConfig& e) {
+  v.optional("room_c", e.room, "Usual temperature of the room.");
+  v.optional("heating_c_per_h", e.heating, "With the boost heaters.", above(0));
+  v.optional("cooling_c_per_h", e.cooling, "With the heaters off, on average.", above(0));
+  v.optional("settling_s", e.settling, "From arriving near a temperature to the dwell.",
+             at_least(0));
+  v.optional("compensation_s", e.compensation, "Nulling the ambient field.", at_least(0));
+  v.optional("operator_answer_s", e.operator_answer, "Until the operator answers.", at_least(0));
 }
 
 template <class Visitor>
@@ -184,6 +200,7 @@ void describe(Visitor& v, BenchConfig& b) {
   v.required("turntable", b.turntable, "Turns the gyro in azimuth.");
   v.required("gyro", b.gyro, "The gyro under test.");
   v.optional("limits", b.limits, "What no procedure may exceed here.");
+  v.optional("estimates", b.estimates, "How long things take here, for a plan's duration.");
   v.optional("simulation", b.simulation, "The true plant behind simulated instruments.");
 }
 

@@ -1,6 +1,8 @@
 #include "procedures/plan.hpp"
 
 #include "config/paths.hpp"
+#include "procedures/check_limits.hpp"
+#include "procedures/estimate.hpp"
 #include "procedures/expand.hpp"
 
 namespace fogbench::procedures {
@@ -26,6 +28,19 @@ Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::B
   auto steps = expand(procedure, overrides, load_called);
   if (!steps) return steps.error();
   return make_plan(procedure.name, std::move(*steps), bench);
+}
+
+Result<Plan> make_plan(const std::string& name, std::vector<PlannedStep> steps,
+                       const config::BenchConfig& bench) {
+  estimate_durations(steps, bench);
+  auto met = check_limits(name, steps, bench);
+  if (!met) return met.error();
+  Plan plan{name, std::move(steps), Seconds{0.0}, std::move(*met)};
+  for (PlannedStep& step : plan.steps) {
+    step.says = sentence(step);
+    plan.estimate += step.estimate;
+  }
+  return plan;
 }
 
 }  // namespace fogbench::procedures
