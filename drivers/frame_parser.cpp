@@ -9,7 +9,7 @@ namespace fogbench::drivers {
 namespace {
 
 /// Large enough to spread the cost of a read, small enough for the second-level cache.
-constexpr std::size_t kBufferBytes = 64 * 1024;
+constexpr std::size_t kBufferBytes = std::size_t{64} * 1024;
 
 }  // namespace
 

@@ -18,9 +18,12 @@ constexpr double kRoundingOfRange = 1e-6;
 
 }  // namespace
 
-HidMagnetometer::HidMagnetometer(std::string name, const config::HidDevice& device,
+HidMagnetometer::HidMagnetometer(std::string name, config::HidDevice device,
                                  std::unique_ptr<HidTransport> transport, Clock& clock)
-    : name_(std::move(name)), device_(device), transport_(std::move(transport)), clock_(clock) {
+    : name_(std::move(name)),
+      device_(std::move(device)),
+      transport_(std::move(transport)),
+      clock_(clock) {
   const auto find = [&](std::string_view wanted) -> const config::FieldSpec* {
     const auto found = std::find_if(device_.fields.begin(), device_.fields.end(),
                                     [&](const auto& field) { return field.name == wanted; });

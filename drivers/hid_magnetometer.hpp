@@ -29,7 +29,7 @@ class HidMagnetometer final : public Magnetometer {
   Result<FieldReading> read() override;
 
  private:
-  HidMagnetometer(std::string name, const config::HidDevice& device,
+  HidMagnetometer(std::string name, config::HidDevice device,
                   std::unique_ptr<HidTransport> transport, Clock& clock);
   Status check_layout();
   /// Whether the report differs from the last one: by its sequence, else by its bytes.

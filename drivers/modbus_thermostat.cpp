@@ -36,9 +36,12 @@ const std::array<const char*, ModbusThermostat::kQuantities> ModbusThermostat::k
     "boost_power",
     "normal_power"};
 
-ModbusThermostat::ModbusThermostat(std::string name, const config::ModbusDevice& device,
+ModbusThermostat::ModbusThermostat(std::string name, config::ModbusDevice device,
                                    std::unique_ptr<ModbusTransport> transport, Clock& clock)
-    : name_(std::move(name)), device_(device), transport_(std::move(transport)), clock_(clock) {}
+    : name_(std::move(name)),
+      device_(std::move(device)),
+      transport_(std::move(transport)),
+      clock_(clock) {}
 
 Result<std::unique_ptr<ModbusThermostat>> ModbusThermostat::open(
     std::string name, const config::ModbusDevice& device,

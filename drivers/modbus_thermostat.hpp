@@ -51,7 +51,7 @@ class ModbusThermostat final : public Thermostat {
     std::vector<std::uint16_t> words;
   };
 
-  ModbusThermostat(std::string name, const config::ModbusDevice& device,
+  ModbusThermostat(std::string name, config::ModbusDevice device,
                    std::unique_ptr<ModbusTransport> transport, Clock& clock);
   Status check_map();
   void group_registers();

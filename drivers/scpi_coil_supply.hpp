@@ -29,8 +29,11 @@ class ScpiCoilSupply final : public CoilSupply {
   Status make_safe() override;
 
  private:
-  ScpiCoilSupply(ScpiDialogue dialogue, const config::CoilConfig& config, Clock& clock)
-      : dialogue_(std::move(dialogue)), config_(config), clock_(clock), valid_from_(clock.now()) {}
+  ScpiCoilSupply(ScpiDialogue dialogue, config::CoilConfig config, Clock& clock)
+      : dialogue_(std::move(dialogue)),
+        config_(std::move(config)),
+        clock_(clock),
+        valid_from_(clock.now()) {}
   Status program(double current_a);
   Result<double> measure();
   /// kDevice when the output is not where it was set.
