@@ -1,0 +1,46 @@
+#pragma once
+// A fit under way, shared by the two halves of fit(): finding the solution (fit.cpp) and reporting
+// it (fit_results.cpp).
+
+#include <Eigen/Core>
+#include <limits>
+
+#include "model/fit.hpp"
+#include "model/observations.hpp"
+
+namespace fogbench::model {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// One fit under way: the system, and what has been found so far.
+struct FitWork {
+  const Table& table;
+  const config::ModelFile& model;
+  const FitOptions& options;
+  const Signals& signals;
+  const Design& design;
+  Observations& observations;
+  FitResult result;
+  Eigen::VectorXd inner;
+  Eigen::VectorXd beta;        ///< of the free columns
+  Eigen::MatrixXd covariance;  ///< of [free columns, inner], NaN where not determined
+  double coverage = 2.0;       ///< factor of the expanded uncertainty
+
+  Eigen::Index free() const { return static_cast<Eigen::Index>(design.free_columns().size()); }
+  Eigen::Index unknowns() const { return free() + inner.size(); }
+};
+
+/// Predicted values, residuals and their size; needs degrees_of_freedom.
+void fill_residuals(FitWork& work);
+/// Independent noise: sigma is estimated, as a whole or as a factor on the weights.
+void fill_independent_noise(FitWork& work);
+/// Coloured noise on the rows themselves. Where windows were joined, a row's own white noise comes
+/// on top of its window's deviation, and no correlation is removed.
+Status fill_coloured_noise(FitWork& work);
+/// Estimates with their uncertainty, and warnings of inner parameters that are not identified.
+void fill_estimates(FitWork& work);
+void warn_of_correlation(FitResult& result);
+/// The model file with the results in it; terms that were left out whole are not in it.
+config::ModelFile fitted_model(const FitWork& work);
+
+}  // namespace fogbench::model
