@@ -6,9 +6,11 @@
 //   mean residual of region g:  m_g = w_g'r
 //   cov(m) = W'(Omega - X (X'Omega^-1 X)^-1 X')W     (fitted; averaged over the plausible noise)
 //   cov(m) = W'Omega W                               (held: nothing was fitted away)
-//   p of the worst region: the share of draws of N(0, cov) whose largest |z| is at least its own
+//   p of the worst region: the share of draws of the noise whose largest |z| is at least its own
 //
-// With independent noise of unknown size the draws are divided by their own residual deviation.
+// z is m_g over its standard error; under coloured noise on up to 1,000 windows it is the offset's
+// own likelihood ratio (region_score.hpp), which sees more. With independent noise of unknown size
+// the draws are divided by their own residual deviation.
 
 #include <cstdint>
 #include <string>
@@ -27,7 +29,7 @@ struct Region {
   std::size_t rows = 0;
   double observed = 0.0;        ///< means over the region's rows
   double residual = 0.0;        ///< observed - model
-  double standard_error = 0.0;  ///< of that mean under the noise model; NaN when no noise is known
+  double standard_error = 0.0;  ///< of that mean under the noise; 0 when it is not known
   double z = 0.0;
   double p_family_wise = 1.0;  ///< corrected for all regions looked at
   std::string says;
@@ -51,7 +53,7 @@ struct Comparison {
   std::vector<RunChange> changes;
   std::vector<std::string> sentences;  ///< the conclusions, in the order to print them
   bool noise_known = false;            ///< from the table or the fit; else z and p mean nothing
-  double noise_floor = 0.0;            ///< RMS that the noise alone would leave; NaN when unknown
+  double noise_floor = 0.0;            ///< RMS that white noise alone would leave; NaN when unknown
   double p_adequate = 1.0;             ///< of the worst region
 };
 

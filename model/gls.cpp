@@ -29,6 +29,9 @@ constexpr double kLeastWhite = 1e-12;
 // Twice the log-likelihood that a coefficient must win to be called distinguishable from zero
 // (5 % one-sided, chi-squared with one degree of freedom and the zero on the boundary).
 constexpr double kDistinguishable = 2.71;
+// Of the table of log P(nu/2, x): from e^-4 to e^4 times its median.
+constexpr double kTableSpan = 4.0;
+constexpr double kTableStep = 0.005;
 constexpr double kTwoSigma = 0.9544997361036416;  // probability within two standard deviations
 
 /// log of the regularised lower incomplete gamma function; the value itself may underflow.
@@ -197,6 +200,29 @@ std::string describe(const NoiseEstimate& estimate, bool too_few, double nu, dou
 }
 
 }  // namespace
+
+ResidualEvidence::ResidualEvidence(double nu, double anchor) : nu_(nu), anchor_(anchor) {
+  if (anchor_ == 0.0) return;
+  // Below the table P is a power of its argument, above it one.
+  first_ = std::log(0.5 * nu_) - kTableSpan;
+  const auto steps = static_cast<int>(2.0 * kTableSpan / kTableStep) + 1;
+  for (int i = 0; i < steps; ++i) {
+    table_.push_back(log_gamma_p(0.5 * nu_, std::exp(first_ + i * kTableStep)));
+  }
+}
+
+double ResidualEvidence::operator()(double residual_squares) const {
+  const double rss = std::max(residual_squares, nu_ * kLeastWhite * kLeastWhite);
+  const double log_likelihood = -0.5 * nu_ * std::log(rss);
+  if (anchor_ == 0.0) return log_likelihood;
+  const double x = 0.5 * rss / (anchor_ * anchor_);
+  const double place = (std::log(x) - first_) / kTableStep;
+  if (place >= static_cast<double>(table_.size() - 1)) return log_likelihood;
+  if (place < 0.0) return log_likelihood + log_gamma_p(0.5 * nu_, x);
+  const auto i = static_cast<std::size_t>(place);
+  const double part = place - static_cast<double>(i);
+  return log_likelihood + (1.0 - part) * table_[i] + part * table_[i + 1];
+}
 
 Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const VectorXd& y) {
   if (x.rows() != shapes.rows() || y.size() != shapes.rows()) {

@@ -54,6 +54,20 @@ class NoiseShapes {
   double step_of_k_ = 1.0;
 };
 
+/// log of the likelihood of a shape's whitened residual squares, N integrated out above the anchor:
+///   -nu/2 log RSS + log P(nu/2, RSS/(2 anchor^2)),  P the regularised incomplete gamma function
+/// From a table (exact to 1e-6) so that it costs little in simulations.
+class ResidualEvidence {
+ public:
+  ResidualEvidence(double nu, double anchor);
+  double operator()(double residual_squares) const;
+
+ private:
+  double nu_, anchor_;
+  double first_ = 0.0;  ///< log of RSS/(2 anchor^2) where the table begins
+  std::vector<double> table_;
+};
+
 struct GlsResult {
   Eigen::VectorXd beta;
   /// Averaged over the plausible noise models, their disagreement about beta included. NaN in the

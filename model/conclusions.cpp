@@ -1,0 +1,242 @@
+#include "model/conclusions.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "config/units.hpp"
+#include "model/partition.hpp"
+#include "model/repeatability.hpp"
+
+namespace fogbench::model {
+namespace {
+
+constexpr std::size_t kMostRegionsSaid = 5;
+constexpr std::size_t kMostRunsCompared = 6;
+
+/// Half a unit in the last digit that the number is written with: 0.004 -> 0.0005.
+double half_last_digit(double value) {
+  const std::string text = fmt::format("{}", value);
+  const std::size_t exponent = text.find('e');
+  const std::string digits = text.substr(0, exponent);
+  const std::size_t point = digits.find('.');
+  const auto decimals =
+      point == std::string::npos ? 0 : static_cast<int>(digits.size() - point - 1);
+  const int power = exponent == std::string::npos ? 0 : std::stoi(text.substr(exponent + 1));
+  return 0.5 * std::pow(10.0, power - decimals);
+}
+
+struct Rounding {
+  std::string name;
+  double given = 0.0, half = 0.0;
+  double effect = 0.0;  ///< on the model's mean over the region
+};
+
+/// What half a last digit of each given coefficient does to the model in a region.
+std::vector<Rounding> rounding_in(const Region& region, const Table& table,
+                                  const config::ModelFile& model, const FitResult& fit) {
+  std::vector<Rounding> out;
+  for (std::size_t t = 0; t < model.terms.size(); ++t) {
+    if (!model.terms[t].coefficient) continue;
+    config::ModelFile moved = model;
+    const double given = *model.terms[t].coefficient;
+    const double half = half_last_digit(given);
+    *moved.terms[t].coefficient = given + half;
+    const auto values = predict(table, moved);
+    if (!values) continue;
+    double sum = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < fit.rows.size(); ++i) {
+      if (!region.variable.empty()) {
+        if (!table.has(region.variable)) continue;
+        const double at = table.column(region.variable)[fit.rows[i]];
+        if (!(at >= region.from && at <= region.to)) continue;
+      }
+      sum += (*values)[static_cast<Eigen::Index>(fit.rows[i])] -
+             fit.predicted[static_cast<Eigen::Index>(i)];
+      count += 1.0;
+    }
+    if (count > 0.0) out.push_back({model.terms[t].effect, given, half, std::abs(sum / count)});
+  }
+  std::sort(out.begin(), out.end(),
+            [](const Rounding& a, const Rounding& b) { return a.effect > b.effect; });
+  return out;
+}
+
+void say_rounding(Comparison& comparison, const Table& table, const config::ModelFile& model,
+                  std::string_view unit) {
+  const Region& worst = comparison.regions.front();
+  const std::vector<Rounding> all = rounding_in(worst, table, model, comparison.fit);
+  double sum = 0.0;
+  for (const Rounding& rounding : all) sum += rounding.effect;
+  if (all.empty() || sum < std::abs(worst.residual)) return;
+  const Rounding& first = all.front();
+  comparison.sentences.push_back(fmt::format(
+      "Rounding alone could explain that miss: half a unit in the last digit of {} ({} +- {}) "
+      "moves "
+      "the model there by {:.2f} {}, all the given digits together by {:.2f} {}. Give more digits, "
+      "or fit them.",
+      first.name, first.given, first.half, first.effect, unit, sum, unit));
+}
+
+void say_fit(Comparison& c, std::string_view unit, const std::string& noise_says) {
+  std::string text = fmt::format("{} leaves an RMS residual of {:.3g} {} over {} rows.",
+                                 c.as_is ? "The model, held as given," : "The fitted model",
+                                 c.fit.rms, unit, c.fit.rows.size());
+  if (c.noise_known)
+    text += fmt::format(" Noise alone would leave {:.3g} {}.", c.noise_floor, unit);
+  c.sentences.push_back(std::move(text));
+  c.sentences.push_back(fmt::format("The noise: {}.", noise_says));
+}
+
+void say_regions(Comparison& c, const Table& table, const config::ModelFile& model,
+                 std::string_view unit) {
+  if (c.regions.empty()) {
+    c.sentences.push_back("All rows are alike: there are no ranges to look at one by one.");
+    return;
+  }
+  const bool fails = c.noise_known && c.p_adequate < kAdequate;
+  if (!c.noise_known) {
+    c.sentences.push_back(
+        "Whether the misses are more than noise cannot be said; the largest come first:");
+  } else if (!fails) {
+    c.sentences.push_back(
+        fmt::format("No more than noise explains: the worst of {} ranges would stand out as much "
+                    "by chance with "
+                    "{}. ({})",
+                    c.regions.size(), probability_text(c.p_adequate), c.regions.front().says));
+    return;
+  } else {
+    c.sentences.push_back(fmt::format("That is more than noise explains ({}). The worst ranges:",
+                                      probability_text(c.p_adequate)));
+  }
+  for (std::size_t i = 0; i < std::min(c.regions.size(), kMostRegionsSaid); ++i) {
+    const Region& region = c.regions[i];
+    if (fails && region.p_family_wise >= kAdequate) break;
+    std::string text = region.says;
+    if (i == 0) {
+      text.back() = ':';
+      text +=
+          fmt::format(" worst of {}; the model gives {:.4g}, the measurements {:.4g} {}.",
+                      c.regions.size(), region.observed - region.residual, region.observed, unit);
+    }
+    c.sentences.push_back(std::move(text));
+    if (i == 0 && c.as_is) say_rounding(c, table, model, unit);
+  }
+}
+
+/// One run's fit.
+struct RunFit {
+  std::string run;
+  FitResult fit;
+};
+
+std::vector<RunFit> fit_each_run(const Table& table, const config::ModelFile& model,
+                                 const FitOptions& options) {
+  std::vector<RunFit> out;
+  const TextColumn& runs = table.run();
+  for (std::uint32_t r = 0; r < runs.values.size() && out.size() < kMostRunsCompared; ++r) {
+    std::vector<bool> keep(table.rows());
+    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = runs.index[i] == r;
+    auto fitted = fit(table.select(keep), model, options);
+    if (fitted) out.push_back({runs.values[r], std::move(*fitted)});
+  }
+  return out;
+}
+
+/// The magnetic coefficients of a run, with their covariance where it is known.
+RunCoefficients magnetic_part(const RunFit& run, std::vector<std::string>& names,
+                              std::string& unit) {
+  std::vector<Eigen::Index> chosen;
+  std::vector<double> values;
+  names.clear();
+  Eigen::Index k = 0;
+  for (const Estimate& estimate : run.fit.estimates) {
+    if (estimate.held) continue;
+    if (estimate.name.starts_with("magnetic_linear_") && std::isfinite(estimate.value)) {
+      chosen.push_back(k);
+      values.push_back(estimate.value);
+      names.push_back(estimate.name);
+      unit = estimate.unit;
+    }
+    ++k;
+  }
+  RunCoefficients out{.run = run.run, .values = {}, .covariance = {}};
+  out.values =
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  const Eigen::MatrixXd covariance = run.fit.covariance(chosen, chosen);
+  if (covariance.allFinite()) out.covariance = covariance;
+  return out;
+}
+
+/// Coefficients other than the magnetic ones, where both runs know their uncertainty.
+void say_differences(Comparison& c, const std::vector<RunFit>& runs) {
+  for (std::size_t r = 1; r < runs.size(); ++r) {
+    for (std::size_t k = 0; k < runs[0].fit.estimates.size(); ++k) {
+      const Estimate& a = runs[0].fit.estimates[k];
+      const auto& others = runs[r].fit.estimates;
+      if (k >= others.size() || others[k].name != a.name || a.held) continue;
+      if (a.name.starts_with("magnetic_linear_")) continue;
+      const Estimate& b = others[k];
+      const double expanded =
+          std::hypot(a.coverage_factor * a.standard_error, b.coverage_factor * b.standard_error);
+      if (!(std::abs(b.value - a.value) > expanded)) continue;
+      c.sentences.push_back(fmt::format(
+          "From run {} to run {} {} changed by {:.3g} +- {:.2g} {} (95 %), from {:.3g} to {:.3g}.",
+          runs[0].run, runs[r].run, a.name, b.value - a.value, expanded, a.unit, a.value, b.value));
+    }
+  }
+}
+
+void say_changes(Comparison& c, const Table& table, const config::ModelFile& model,
+                 const FitOptions& options) {
+  if (table.run().values.size() < 2 || options.as_is) return;
+  const std::vector<RunFit> runs = fit_each_run(table, model, options);
+  if (runs.size() < 2) return;
+  std::vector<RunCoefficients> sets;
+  std::vector<std::string> names, first_names;
+  std::string unit;
+  bool comparable = true;
+  for (const RunFit& run : runs) {
+    sets.push_back(magnetic_part(run, names, unit));
+    if (sets.size() == 1) first_names = names;
+    comparable = comparable && names == first_names && names.size() >= 2;
+  }
+  if (comparable) {
+    const bool noise_known = std::all_of(sets.begin(), sets.end(),
+                                         [](const auto& set) { return set.covariance.size() > 0; });
+    bool scale_changed = false;
+    for (auto& set : sets) {
+      if (!noise_known) set.covariance.resize(0, 0);
+    }
+    for (std::size_t r = 1; r < sets.size(); ++r) {
+      c.changes.push_back(change_between(sets[0], sets[r], names, unit));
+      scale_changed = scale_changed || c.changes.back().scale_changed;
+    }
+    if (!noise_known && !scale_changed) {
+      for (std::string& text : judge_by_scatter(sets, names, unit)) {
+        c.sentences.push_back(std::move(text));
+      }
+    }
+    for (const RunChange& change : c.changes) c.sentences.push_back(change.says);
+  }
+  say_differences(c, runs);
+}
+
+}  // namespace
+
+std::string probability_text(double p) {
+  return p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.2g}", p);
+}
+
+void conclude(Comparison& comparison, const Table& table, const config::ModelFile& model,
+              const FitOptions& options, const std::string& noise_says) {
+  const std::string_view unit = config::unit_of(model.observable);
+  say_fit(comparison, unit, noise_says);
+  say_regions(comparison, table, model, unit);
+  say_changes(comparison, table, model, options);
+}
+
+}  // namespace fogbench::model

@@ -1,0 +1,122 @@
+#include "model/region_score.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace fogbench::model {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::ArrayXXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kMostDraws = 999;
+constexpr double kOperations = 4e9;  // in all draws: a few seconds
+// Of a region's indicator this part must be left after the fitted columns, or nothing can be said.
+constexpr double kLeastLeft = 1e-3;
+
+/// log sum exp, term by term.
+class LogSum {
+ public:
+  LogSum(Index rows, Index columns)
+      : top_(ArrayXXd::Constant(rows, columns, -std::numeric_limits<double>::infinity())),
+        sum_(ArrayXXd::Zero(rows, columns)) {}
+  void add(const ArrayXXd& term) {
+    const ArrayXXd top = top_.max(term);
+    sum_ = sum_ * (top_ - top).exp() + (term - top).exp();
+    top_ = top;
+  }
+  ArrayXXd value() const { return top_ + sum_.log(); }
+
+ private:
+  ArrayXXd top_, sum_;
+};
+
+/// Draws of the plausible noise, one a column.
+MatrixXd draw_noise(const NoiseShapes& shapes, const NoiseEstimate& estimate, Index draws,
+                    std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  MatrixXd out = MatrixXd::NullaryExpr(shapes.rows(), draws, [&] { return normal(random); });
+  double reached = 0.0;
+  Index first = 0;
+  for (std::size_t i = 0; i < estimate.plausible.size() && first < draws; ++i) {
+    const auto& [noise, weight] = estimate.plausible[i];
+    reached += weight;
+    const Index last = i + 1 == estimate.plausible.size()
+                           ? draws
+                           : static_cast<Index>(std::lround(reached * static_cast<double>(draws)));
+    if (last <= first) continue;
+    out.middleCols(first, last - first) =
+        shapes.whitener(noise)->colour(out.middleCols(first, last - first));
+    first = last;
+  }
+  return out;
+}
+
+}  // namespace
+
+RegionScores score_regions(const NoiseShapes& shapes, const MatrixXd& x, const VectorXd& y,
+                           const MatrixXd& indicators, const NoiseEstimate& estimate,
+                           std::uint64_t seed) {
+  const Index n = shapes.rows(), regions = indicators.cols();
+  const double per_draw = static_cast<double>(n) * static_cast<double>(shapes.size()) *
+                          static_cast<double>(40 + 2 * regions);
+  const Index draws =
+      std::clamp(static_cast<Index>(kOperations / per_draw), Index{199}, kMostDraws);
+  MatrixXd data(n, draws + 1);  // the measurements, then the draws
+  data.col(0) = y;
+  data.rightCols(draws) = draw_noise(shapes, estimate, draws, seed);
+
+  LogSum without(1, draws + 1), with(regions, draws + 1);
+  VectorXd sign = VectorXd::Ones(regions);
+  double best = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    const auto whitener = shapes.whitener(k);
+    MatrixXd e = whitener->whiten(data);
+    MatrixXd u = whitener->whiten(indicators);
+    const VectorXd whole = u.colwise().norm();
+    double log_determinant = 0.5 * whitener->log_determinant();
+    Index rank = 0;
+    if (x.cols() > 0) {
+      const Eigen::ColPivHouseholderQR<MatrixXd> qr(whitener->whiten(x));
+      rank = qr.rank();
+      const MatrixXd q = qr.householderQ() * MatrixXd::Identity(n, rank);
+      e -= q * (q.transpose() * e);
+      u -= q * (q.transpose() * u);
+      log_determinant += qr.matrixQR().diagonal().head(rank).array().abs().log().sum();
+    }
+    for (Index g = 0; g < regions; ++g) {
+      const double left = u.col(g).norm();
+      u.col(g) *= left > kLeastLeft * whole[g] ? 1.0 / left : 0.0;
+    }
+    const ArrayXXd score = (u.transpose() * e).array();
+    const Eigen::Array<double, 1, Eigen::Dynamic> squares = e.colwise().squaredNorm().array();
+    const ResidualEvidence evidence(static_cast<double>(n - rank), shapes.anchor());
+    const double base = shapes.log_prior(k) - log_determinant;
+    const auto log_evidence = [&](double rss) { return base + evidence(rss); };
+    without.add(squares.unaryExpr(log_evidence));
+    with.add((squares.replicate(regions, 1) - score.square()).unaryExpr(log_evidence));
+    const double weight = log_evidence(squares[0]);
+    if (weight > best) {
+      best = weight;
+      sign = score.col(0).unaryExpr([](double s) { return s < 0.0 ? -1.0 : 1.0; });
+    }
+  }
+  const ArrayXXd z = (2.0 * (with.value() - without.value().replicate(regions, 1))).max(0.0).sqrt();
+  RegionScores out{.z = sign.cwiseProduct(z.col(0).matrix()), .family_wise = VectorXd(regions)};
+  const ArrayXd largest = z.rightCols(draws).colwise().maxCoeff().transpose();
+  for (Index g = 0; g < regions; ++g) {
+    const auto at_least = static_cast<double>((largest >= z(g, 0)).count());
+    out.family_wise[g] =
+        z(g, 0) > 0.0 ? (1.0 + at_least) / (1.0 + static_cast<double>(draws)) : 1.0;
+  }
+  return out;
+}
+
+}  // namespace fogbench::model
