@@ -77,8 +77,7 @@ Status write_gyro(RunLogReader& reader, const StoredRun& run, config::OutputFile
     text.clear();
     const auto append = std::back_inserter(text);
     for (std::size_t i = 0; i < block.index.size(); ++i) {
-      const double time_s =
-          header.first_frame_time_s + static_cast<double>(block.index[i]) / header.frame_rate_hz;
+      const double time_s = static_cast<double>(block.index[i]) / header.frame_rate_hz;
       // The difference is exact in double; float digits hold what the instrument said.
       const double rate = static_cast<double>(block.rate_deg_per_h[i]);
       const float corrected = static_cast<float>(rate - header.reference_rate_deg_per_h);

@@ -107,8 +107,8 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
   auto insert = database_->prepare(
       "INSERT INTO runs (procedure, procedure_json, bench, bench_json, scenario_json, seed, "
       "gyro_serial_number, operator_name, software_version, started_at, frame_rate_hz, "
-      "first_frame_time_s, reference_rate_deg_per_h) VALUES "
-      "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "reference_rate_deg_per_h) VALUES "
+      "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   auto instrument = database_->prepare("INSERT INTO instruments VALUES (?, ?, ?, ?, ?, ?)");
   if (!insert) return insert.error();
   if (!instrument) return instrument.error();
@@ -120,7 +120,7 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
     header.seed ? insert->bind(std::to_string(*header.seed)) : insert->bind_null();
     insert->bind(header.gyro_serial_number).bind(header.operator_name);
     insert->bind(header.software_version).bind(header.started_at);
-    insert->bind(header.frame_rate_hz).bind(header.first_frame_time_s);
+    insert->bind(header.frame_rate_hz);
     insert->bind(header.reference_rate_deg_per_h);
     if (const Status ok = insert->run(); !ok) return ok;
     run_ = database_->last_insert_id();

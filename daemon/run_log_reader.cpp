@@ -24,7 +24,7 @@ namespace {
 constexpr auto kSelectRuns =
     "SELECT run, procedure, procedure_json, bench, bench_json, scenario_json, seed, "
     "gyro_serial_number, operator_name, software_version, started_at, frame_rate_hz, "
-    "first_frame_time_s, reference_rate_deg_per_h, "
+    "reference_rate_deg_per_h, "
     "outcome, reason, safe_state_reached, ended_at, frames_good, frames_bad_checksum, "
     "frames_invalid, frames_repeated, frames_missing, bytes_skipped, raw_sha256, "
     "(SELECT count(*) FROM points WHERE points.run = runs.run), "
@@ -69,7 +69,6 @@ StoredRun read_run(const Statement& row) {
   header.software_version = text();
   header.started_at = text();
   header.frame_rate_hz = real();
-  header.first_frame_time_s = real();
   header.reference_rate_deg_per_h = real();
 
   const bool ended = !row.is_null(column);

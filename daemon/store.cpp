@@ -80,7 +80,7 @@ CREATE TABLE runs (
   scenario_json TEXT, seed TEXT,
   gyro_serial_number TEXT, operator_name TEXT, software_version TEXT,
   started_at TEXT NOT NULL,
-  frame_rate_hz REAL, first_frame_time_s REAL, reference_rate_deg_per_h REAL,
+  frame_rate_hz REAL, reference_rate_deg_per_h REAL,
   outcome TEXT, reason TEXT, safe_state_reached INTEGER, ended_at TEXT,
   frames_good INTEGER, frames_bad_checksum INTEGER, frames_invalid INTEGER,
   frames_repeated INTEGER, frames_missing INTEGER, bytes_skipped INTEGER,

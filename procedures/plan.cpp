@@ -1,5 +1,8 @@
 #include "procedures/plan.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "config/paths.hpp"
 #include "procedures/check_limits.hpp"
 #include "procedures/estimate.hpp"
@@ -25,9 +28,20 @@ Result<config::ProcedureConfig> load_called(const std::string& name,
 
 Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
                        const std::map<std::string, config::ParameterValue>& overrides) {
-  auto steps = expand(procedure, overrides, load_called);
+  std::vector<std::filesystem::path> files;
+  const auto remember = [&files](const std::filesystem::path& file) {
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  };
+  remember(procedure.file);
+  auto steps = expand(procedure, overrides, [&](const auto& name, const auto& caller) {
+    auto called = load_called(name, caller);
+    if (called) remember(called->file);
+    return called;
+  });
   if (!steps) return steps.error();
-  return make_plan(procedure.name, std::move(*steps), bench);
+  auto plan = make_plan(procedure.name, std::move(*steps), bench);
+  if (plan) plan->files = std::move(files);
+  return plan;
 }
 
 Result<Plan> make_plan(const std::string& name, std::vector<PlannedStep> steps,

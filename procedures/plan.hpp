@@ -2,6 +2,7 @@
 // A procedure made ready: parameters bound, loops unrolled, called procedures inlined, limits
 // checked and the duration estimated, before anything is touched.
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <variant>
@@ -81,6 +82,7 @@ struct Plan {
   std::vector<PlannedStep> steps;
   Seconds estimate{0.0};
   std::vector<std::string> limits_met;  ///< one sentence each: what was checked, and by how much
+  std::vector<std::filesystem::path> files;  ///< the procedure's and those of all that it calls
 };
 
 /// Errors: kBadInput (unknown parameter, unknown or recursive procedure, wrong type) and kLimit

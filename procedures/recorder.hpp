@@ -26,7 +26,6 @@ struct RunHeader {
   std::string software_version;
   std::string started_at;  ///< ISO 8601, UTC
   double frame_rate_hz = 0.0;
-  double first_frame_time_s = 0.0;  ///< middle of the gyro's frame 0, since power-on
   double reference_rate_deg_per_h = 0.0;
 };
 

@@ -19,7 +19,6 @@ class ExportTest : public testing::Test {
     log_ = std::move(*log);
     procedures::RunHeader header;
     header.frame_rate_hz = 1000.0;
-    header.first_frame_time_s = 0.0005;
     header.reference_rate_deg_per_h = 12.0;
     EXPECT_TRUE(log_->begin_run(header, {}));
   }
@@ -96,7 +95,7 @@ TEST_F(ExportTest, TheRawStreamHasATimeAndTheReferenceTakenOff) {
   ASSERT_TRUE(log_->end_run({}));
   EXPECT_EQ(exported(true),
             "time_s,rate_deg_per_h,temperature_c\n"
-            "0.000500,0.5,21\n0.001500,-0.5,21\n0.003500,,22\n");
+            "0.000000,0.5,21\n0.001000,-0.5,21\n0.003000,,22\n");
 }
 
 }  // namespace

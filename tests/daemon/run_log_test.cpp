@@ -30,7 +30,6 @@ procedures::RunHeader header() {
   header.software_version = "0.1.0";
   header.started_at = "2026-01-01T00:00:00Z";
   header.frame_rate_hz = 1000.0;
-  header.first_frame_time_s = 0.0005;
   header.reference_rate_deg_per_h = 12.433;
   return header;
 }
@@ -86,7 +85,6 @@ TEST_F(RunLogTest, KeepsEveryFieldOfARun) {
   EXPECT_EQ(stored->header.software_version, "0.1.0");
   EXPECT_EQ(stored->header.started_at, "2026-01-01T00:00:00Z");
   EXPECT_EQ(stored->header.frame_rate_hz, 1000.0);
-  EXPECT_EQ(stored->header.first_frame_time_s, 0.0005);
   EXPECT_EQ(stored->header.reference_rate_deg_per_h, 12.433);
   ASSERT_TRUE(stored->end);
   EXPECT_EQ(stored->outcome(), "aborted");
