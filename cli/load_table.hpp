@@ -15,11 +15,12 @@ struct DataOptions {
   std::vector<std::string> columns;  ///< "wanted=name"
   std::string segment;               ///< glob; empty: every row
   std::string store;                 ///< for bare run numbers; empty: the default store
+  bool unfinished = false;           ///< also runs that were not completed
 };
 
 enum class DataCount { kOne, kSeveral };
 
-/// Declares DATA, --column, --segment and --store on a command.
+/// Declares DATA, --column, --segment, --unfinished and --store on a command.
 void add_data_options(CLI::App& command, DataOptions& options, DataCount count = DataCount::kOne);
 
 /// The tables one after the other. With several, the run of each row is "DATA/run", so that test 1

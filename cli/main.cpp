@@ -19,7 +19,11 @@ constexpr auto kFooter =
     "`fogbench COMMAND --help` shows a command's options and examples.";
 
 void add_commands(CLI::App& app, fogbench::cli::Action& action) {
+  fogbench::cli::add_plan(app, action);
+  fogbench::cli::add_dry_run(app, action);
   fogbench::cli::add_runs(app, action);
+  fogbench::cli::add_show(app, action);
+  fogbench::cli::add_export(app, action);
 }
 
 int run(int argc, char** argv) {

@@ -67,17 +67,9 @@ std::string with_error(double value, double standard_error) {
   return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, standard_error, decimals);
 }
 
-std::string duration_text(double seconds) {
-  if (!std::isfinite(seconds)) return "-";
-  const auto whole = static_cast<long long>(std::llround(std::max(seconds, 0.0)));
-  if (whole < 120) return fmt::format("{} s", whole);
-  if (whole < 7200) return fmt::format("{} min", (whole + 30) / 60);
-  const long long minutes = (whole + 30) / 60;
-  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
-}
-
-void print_json(const nlohmann::json& document) {
-  fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+void print_json(const nlohmann::ordered_json& document) {
+  fmt::print("{}\n",
+             document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 void print_error(const std::string& message) {
@@ -85,6 +77,10 @@ void print_error(const std::string& message) {
   std::replace_if(
       line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   fmt::print(stderr, "fogbench: {}\n", line);
+}
+
+void print_note(const std::string& message) {
+  print_error("note: " + message);
 }
 
 bool progress_wanted() {

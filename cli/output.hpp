@@ -36,15 +36,15 @@ class TextTable {
 std::string fixed(double value, int decimals);
 /// Value and one standard error to two digits of the error: "0.0123 +- 0.0045".
 std::string with_error(double value, double standard_error);
-/// Seconds as a person says them: "45 s", "12 min", "2 h 05 min".
-std::string duration_text(double seconds);
 
 /// One document and a newline on stdout. NaN becomes null, bytes that are not UTF-8 a question
 /// mark.
-void print_json(const nlohmann::json& document);
+void print_json(const nlohmann::ordered_json& document);
 
 /// One line "fogbench: ..." on stderr.
 void print_error(const std::string& message);
+/// One line "fogbench: note: ..." on stderr: the result stands, but the reader should know.
+void print_note(const std::string& message);
 
 /// True when stderr is a terminal, so that a progress line may overwrite itself there.
 bool progress_wanted();

@@ -1,25 +1,73 @@
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "cli/command.hpp"
+#include "cli/common_options.hpp"
+#include "cli/output.hpp"
+#include "daemon/run_log_reader.hpp"
 
 namespace fogbench::cli {
 namespace {
 
 struct RunsOptions {
   std::string store;
+  bool json = false;
 };
 
-Result<ExitStatus> run_runs(const RunsOptions&) {
-  return Error{ErrorCode::kStore, "no run log yet"};
+nlohmann::ordered_json to_json(const daemon::StoredRun& run) {
+  return {{"run", run.run},
+          {"started_at", run.header.started_at},
+          {"procedure", run.header.procedure},
+          {"bench", run.header.bench},
+          {"seed",
+           run.header.seed ? nlohmann::ordered_json(*run.header.seed) : nlohmann::ordered_json()},
+          {"outcome", run.outcome()},
+          {"points", run.points},
+          {"points_void", run.points_void}};
+}
+
+Result<ExitStatus> run_runs(const RunsOptions& options) {
+  const auto path = store_path(options.store);
+  if (!path) return path.error();
+  auto reader = daemon::RunLogReader::open(*path);
+  if (!reader) return reader.error();
+  const auto runs = (*reader)->runs();
+  if (!runs) return runs.error();
+
+  if (options.json) {
+    nlohmann::ordered_json document{{"store", path->string()},
+                                    {"runs", nlohmann::ordered_json::array()}};
+    for (const auto& run : *runs) document["runs"].push_back(to_json(run));
+    print_json(document);
+    return ExitStatus::kDone;
+  }
+  using Align = TextTable::Align;
+  TextTable table({{"run", ""},
+                   {"started, UTC", "", Align::kLeft},
+                   {"procedure", "", Align::kLeft},
+                   {"bench", "", Align::kLeft},
+                   {"seed", ""},
+                   {"points", ""},
+                   {"outcome", "", Align::kLeft}});
+  for (const auto& run : *runs) {
+    table.add_row({std::to_string(run.run), run.header.started_at, run.header.procedure,
+                   run.header.bench, run.header.seed ? std::to_string(*run.header.seed) : "-",
+                   std::to_string(run.points), run.outcome()});
+  }
+  fmt::print("{}", table.empty() ? "No runs yet.\n" : table.text());
+  return ExitStatus::kDone;
 }
 
 }  // namespace
 
 void add_runs(CLI::App& app, Action& action) {
   add_command<RunsOptions>(
-      app, action, "runs", "List the runs of a store", "  fogbench runs\n",
+      app, action, "runs", "List the runs of a run log",
+      "  fogbench runs\n  fogbench runs --store bench-2.db --json",
       [](CLI::App& command, RunsOptions& options) {
-        command.add_option("--store", options.store, "Store file instead of the default one");
+        add_store_option(command, options.store);
+        command.add_flag("--json", options.json, "One JSON document on stdout");
       },
       run_runs);
 }

@@ -33,19 +33,28 @@ Result<std::unique_ptr<OutputFile>> OutputFile::open(const fs::path& path) {
     return Error{ErrorCode::kBadInput,
                  fmt::format("{}: is a directory; a file name was expected", path.string())};
   }
-  const bool direct = fs::exists(status) && !fs::is_regular_file(status);
-  fs::path temporary = path;
-  if (!direct) temporary += fmt::format(".{}.partial", getpid());
-  std::FILE* file = std::fopen(temporary.c_str(), direct ? "we" : "wxe");
-  if (file == nullptr) return error_for(path);
-  return std::unique_ptr<OutputFile>(new OutputFile(path, std::move(temporary), file));
+  fs::path target = path, temporary;
+  std::FILE* file = nullptr;
+  if (path == "-") {
+    target = "standard output";
+    file = fdopen(dup(STDOUT_FILENO), "w");
+  } else if (fs::exists(status) && !fs::is_regular_file(status)) {
+    file = std::fopen(path.c_str(), "we");
+  } else {
+    if (fs::is_symlink(fs::symlink_status(path, ignored)))
+      target = fs::weakly_canonical(path, ignored);
+    temporary = fmt::format("{}.{}.partial", target.string(), getpid());
+    file = std::fopen(temporary.c_str(), "wxe");
+  }
+  if (file == nullptr) return error_for(target);
+  return std::unique_ptr<OutputFile>(new OutputFile(target, temporary, file));
 }
 
 OutputFile::~OutputFile() {
   if (file_ == nullptr) return;
   std::fclose(file_);
   std::error_code ignored;
-  if (temporary_ != path_) fs::remove(temporary_, ignored);
+  if (!temporary_.empty()) fs::remove(temporary_, ignored);
 }
 
 Status OutputFile::write(std::string_view text) {
@@ -55,7 +64,7 @@ Status OutputFile::write(std::string_view text) {
 
 Status OutputFile::commit() {
   if (std::fflush(file_) != 0) return error();
-  if (temporary_ != path_) {
+  if (!temporary_.empty()) {
     if (fsync(fileno(file_)) != 0) return error();
     if (std::rename(temporary_.c_str(), path_.c_str()) != 0) return error();
   }

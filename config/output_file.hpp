@@ -13,7 +13,8 @@ namespace fogbench::config {
 
 class OutputFile {
  public:
-  /// Something that is not a regular file (/dev/stdout, a pipe) is written directly.
+  /// "-" is standard output. It, and whatever else is not a regular file (a pipe, a terminal), is
+  /// written directly; what a symbolic link points to is replaced, not the link.
   /// Errors of every call: kBadInput with the path and the system's reason.
   static Result<std::unique_ptr<OutputFile>> open(const std::filesystem::path& path);
   OutputFile(const OutputFile&) = delete;
@@ -30,7 +31,7 @@ class OutputFile {
   Error error() const;
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< equal to path_ when written directly
+  std::filesystem::path temporary_;  ///< empty when written directly
   std::FILE* file_;
 };
 

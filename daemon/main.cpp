@@ -1,3 +1,121 @@
-int main() {
-  return 0;
+// fogbenchd: runs procedures on a bench in the foreground, one after the other, and logs what it
+// does. SIGTERM and SIGINT abort to the safe state.
+
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "config/exit_status.hpp"
+#include "daemon/abort_on_signal.hpp"
+#include "daemon/run_options.hpp"
+#include "daemon/session.hpp"
+#include "daemon/simulated_operator.hpp"
+#include "daemon/store.hpp"
+
+namespace fogbench::daemon {
+namespace {
+
+struct DaemonOptions {
+  SetupOptions setup;
+  std::optional<std::uint64_t> seed;
+  std::string store;
+  Speed speed = Speed::kRealtime;
+  std::vector<std::string> procedures;
+};
+
+void declare(CLI::App& app, DaemonOptions& options) {
+  app.set_version_flag("--version", "fogbenchd " FOGBENCH_VERSION);
+  app.add_option("PROCEDURE", options.procedures, "Procedure files, or ready ones, in their order")
+      ->required();
+  app.add_option("--bench", options.setup.bench, "A bench file, or a ready one")->required();
+  app.add_option("--store", options.store, "Run log to write (default: $FOGBENCH_STORE...)");
+  app.add_option("--scenario", options.setup.scenario,
+                 "What the simulated gyro hides (default: clean)");
+  add_seed_option(app, options.seed);
+  add_speed_option(app, options.speed, "realtime");
+  app.footer(
+      "Examples:\n  fogbenchd --bench simulated --speed max thermostat-steps coil-sweep\n"
+      "Exit status: 0 done, 2 usage, 3 bad input, 4 bench or run log failed.");
+}
+
+/// Everything is read, checked and planned before the bench is touched.
+Status run(const DaemonOptions& options) {
+  auto setup = load_setup(options.setup);
+  if (!setup) return setup.error();
+  if (const Status ok = check_simulated(setup->bench); !ok) return ok;
+  std::vector<PlannedProcedure> planned;
+  for (const std::string& name : options.procedures) {
+    auto procedure = plan_procedure(name, setup->bench, {});
+    if (!procedure) return procedure.error();
+    spdlog::info("{}: {} steps, {:.1f} h", procedure->plan.procedure, procedure->plan.steps.size(),
+                 procedure->plan.estimate.count() / 3600.0);
+    planned.push_back(std::move(*procedure));
+  }
+  std::filesystem::path store = options.store;
+  if (options.store.empty()) {
+    const auto standard = default_store();
+    if (!standard) return standard.error();
+    store = *standard;
+  }
+  const std::uint64_t seed = options.seed.value_or(random_seed());
+
+  SimulatedOperator person;
+  const std::string bench = setup->bench.name;
+  auto session = Session::open(std::move(*setup), seed, store, options.speed, person);
+  if (!session) return session.error();
+  spdlog::info("bench {} is in its safe state; run log {}, seed {}", bench, store.string(), seed);
+  procedures::RunEngine& engine = (*session)->engine();
+  const AbortOnSignal abort_on_signal(engine);
+  std::size_t step = 0;
+  engine.on_progress([&step](const procedures::Progress& now) {
+    if (now.step + 1 == step) return;
+    step = now.step + 1;
+    spdlog::info("step {} of {}: {}", std::min(step, now.steps), now.steps, now.says);
+  });
+  engine.on_point([](const procedures::Point& point) {
+    spdlog::info("{} at {:.1f} s: {:.4f} deg/h", point.segment, point.time_s, point.rate_deg_per_h);
+  });
+  for (const PlannedProcedure& procedure : planned) {
+    if (AbortOnSignal::asked()) return Error{ErrorCode::kAborted, "aborted on request"};
+    step = 0;
+    const auto summary = (*session)->run(procedure);
+    if (!summary) return summary.error();
+    const procedures::RunEnd& end = summary->end;
+    const std::string says =
+        fmt::format("run {}, {}: {} points, {}; the bench is {}", summary->run,
+                    procedure.plan.procedure, summary->points, end.reason,
+                    end.safe_state_reached ? "in its safe state" : "NOT in its safe state");
+    if (end.outcome == procedures::RunOutcome::kAborted) return Error{ErrorCode::kAborted, says};
+    if (end.outcome == procedures::RunOutcome::kFailed) return Error{ErrorCode::kDevice, says};
+    spdlog::info(says);
+  }
+  return {};
+}
+
+}  // namespace
+}  // namespace fogbench::daemon
+
+int main(int argc, char** argv) {
+  using fogbench::ExitStatus;
+  spdlog::set_default_logger(spdlog::stderr_logger_st("fogbenchd"));
+  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %v");
+  CLI::App app{"fogbenchd - runs acceptance procedures on a bench and logs them", "fogbenchd"};
+  fogbench::daemon::DaemonOptions options;
+  fogbench::daemon::declare(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {  // --help, --version
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "fogbenchd: {} (see fogbenchd --help)\n", error.what());
+    return static_cast<int>(ExitStatus::kUsage);
+  }
+  const auto status = fogbench::daemon::run(options);
+  if (status) return static_cast<int>(ExitStatus::kDone);
+  spdlog::error(status.error().message);
+  return static_cast<int>(fogbench::config::exit_status(status.error().code));
 }

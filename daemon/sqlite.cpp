@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <limits>
 #include <system_error>
@@ -41,6 +42,33 @@ Error store_error(sqlite3* handle, const std::string& path) {
       return Error{ErrorCode::kStore, fmt::format("{}: {}{}", path, detail, reason)};
     }
   }
+}
+
+/// What to hand to sqlite3_open_v2.
+struct Source {
+  std::string name;
+  int flags;
+};
+
+Source source_of(const fs::path& path, Database::Mode mode) {
+  constexpr int kWrite = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_READWRITE;
+  if (mode == Database::Mode::kCreate) return {path.string(), kWrite | SQLITE_OPEN_CREATE};
+  if (mode == Database::Mode::kWrite) return {path.string(), kWrite};
+  // A reader of a WAL database shares memory with its writer through a file beside it, and tidies
+  // it away when it is the last: it needs to write there.
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (access(path.c_str(), W_OK) == 0 && access(folder.c_str(), W_OK) == 0) {
+    return {path.string(), kWrite};
+  }
+  constexpr int kRead = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_READONLY;
+  std::error_code error;
+  if (fs::exists(path.string() + "-wal", error)) return {path.string(), kRead};
+  // Read-only medium, and nobody is writing: it is read as a file that does not change.
+  std::string uri = "file:";
+  for (const char c : path.string()) {
+    uri += c == '%' || c == '?' || c == '#' ? fmt::format("%{:02x}", c) : std::string(1, c);
+  }
+  return {uri + "?immutable=1", kRead | SQLITE_OPEN_URI};
 }
 
 }  // namespace
@@ -148,13 +176,14 @@ Result<std::unique_ptr<Database>> Database::open(const fs::path& path, Mode mode
     }
   }
   sqlite3* handle = nullptr;
-  const int flags = SQLITE_OPEN_NOMUTEX |
-                    (mode == Mode::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE) |
-                    (mode == Mode::kCreate ? SQLITE_OPEN_CREATE : 0);
-  const int code = sqlite3_open_v2(path.c_str(), &handle, flags, nullptr);
+  const Source source = source_of(path, mode);
+  const int code = sqlite3_open_v2(source.name.c_str(), &handle, source.flags, nullptr);
   std::unique_ptr<Database> database(new Database(handle, path.string()));
   if (code != SQLITE_OK) return store_error(handle, path.string());
   sqlite3_busy_timeout(handle, kLockWaitMs);
+  if (mode == Mode::kRead) {
+    if (const Status ok = database->execute("PRAGMA query_only = ON"); !ok) return ok.error();
+  }
   return database;
 }
 

@@ -1,0 +1,73 @@
+#include "cli/common_options.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "daemon/store.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+/// kUsage-worthy when empty: not a finite number.
+std::optional<double> parse_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+}  // namespace
+
+void add_store_option(CLI::App& command, std::string& store) {
+  command.add_option("--store", store,
+                     "Run log to use (default: $FOGBENCH_STORE, else the user's own)");
+}
+
+Result<std::filesystem::path> store_path(const std::string& store) {
+  if (store.empty()) return daemon::default_store();
+  return std::filesystem::path(store);
+}
+
+void add_procedure_options(CLI::App& command, ProcedureOptions& options) {
+  command
+      .add_option("PROCEDURE", options.procedure,
+                  "A procedure file, or a ready one: acceptance, coil-sweep, thermostat-steps...")
+      ->required();
+  command.add_option("--bench", options.bench, "A bench file, or a ready one (default: simulated)");
+  command
+      .add_option("--set", options.set,
+                  "name=value or name=value,value...: a parameter of the procedure")
+      ->allow_extra_args(false);
+}
+
+Result<daemon::Parameters> parse_parameters(const std::vector<std::string>& set) {
+  daemon::Parameters parameters;
+  for (const std::string& assignment : set) {
+    const Error error{
+        ErrorCode::kUsage,
+        fmt::format("--set {}: name=number or name=number,number... was expected", assignment)};
+    const std::size_t equals = assignment.find('=');
+    if (equals == 0 || equals == std::string::npos) return error;
+    const std::string name = assignment.substr(0, equals);
+    std::string_view rest = std::string_view(assignment).substr(equals + 1);
+    std::vector<double> values;
+    while (true) {
+      const std::size_t comma = std::min(rest.find(','), rest.size());
+      const auto value = parse_number(rest.substr(0, comma));
+      if (!value) return error;
+      values.push_back(*value);
+      if (comma == rest.size()) break;
+      rest.remove_prefix(comma + 1);
+    }
+    if (values.size() == 1) {
+      parameters[name] = values.front();
+    } else {
+      parameters[name] = std::move(values);
+    }
+  }
+  return parameters;
+}
+
+}  // namespace fogbench::cli

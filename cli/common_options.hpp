@@ -1,0 +1,31 @@
+#pragma once
+// Options that several commands share.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "config/result.hpp"
+#include "daemon/session.hpp"
+
+namespace fogbench::cli {
+
+/// --store FILE.
+void add_store_option(CLI::App& command, std::string& store);
+/// The store as named, or the default one.
+Result<std::filesystem::path> store_path(const std::string& store);
+
+/// PROCEDURE, --bench and --set name=value.
+struct ProcedureOptions {
+  std::string procedure;
+  std::string bench = daemon::SetupOptions{}.bench;
+  std::vector<std::string> set;
+};
+void add_procedure_options(CLI::App& command, ProcedureOptions& options);
+
+/// "name=1.5" or "name=31,35,40". kUsage for anything else.
+Result<daemon::Parameters> parse_parameters(const std::vector<std::string>& set);
+
+}  // namespace fogbench::cli

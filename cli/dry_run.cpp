@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "cli/common_options.hpp"
+#include "cli/output.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/run_report.hpp"
+#include "daemon/abort_on_signal.hpp"
+#include "daemon/run_options.hpp"
+#include "daemon/session.hpp"
+#include "daemon/simulated_operator.hpp"
+#include "procedures/estimate.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+using procedures::Point;
+using procedures::RunOutcome;
+
+struct DryRunOptions {
+  ProcedureOptions procedure;
+  std::string scenario = daemon::SetupOptions{}.scenario;
+  std::optional<std::uint64_t> seed;
+  std::string store;
+  daemon::Speed speed = daemon::Speed::kMaximum;
+  bool json = false;
+};
+
+void print_heading(const procedures::Plan& plan, const DryRunOptions& options,
+                   const std::string& bench, std::uint64_t seed) {
+  fmt::print("{}, dry run on bench {}: {} steps, about {} of bench time\n", plan.procedure, bench,
+             plan.steps.size(), procedures::duration_text(plan.estimate));
+  for (const std::string& sentence : plan.limits_met) fmt::print("  {}\n", sentence);
+  fmt::print("scenario {}, seed {}\n\n", options.scenario, seed);
+  fmt::print("{:>5}  {:>10}  {:<24}{:>9}{:>9}{:>11}  {:<10}\n", "point", "time, s", "segment",
+             "T, degC", "H, uT", "deg/h", "+-");
+}
+
+/// The point is on disk already, and stays there when this line has been printed.
+void print_point(std::size_t number, const Point& point) {
+  fmt::print("{:>5}  {:>10.1f}  {:<24}{:>9}{:>9}{:>11}  {}{}\n", number, point.time_s,
+             point.segment, fixed(point.temperature_c, 2), fixed(point.field_set_ut, 0),
+             fixed(point.rate_deg_per_h, 4), fixed(point.rate_std_error_deg_per_h, 4),
+             point.dropped == 0 ? "" : fmt::format("  ({} frames dropped)", point.dropped));
+  std::fflush(stdout);
+}
+
+Status print_results(const std::filesystem::path& store, const procedures::RunSummary& summary,
+                     const DryRunOptions& options) {
+  auto reader = daemon::RunLogReader::open(store);
+  if (!reader) return reader.error();
+  if (options.json) {
+    auto document = run_json(**reader, summary.run);
+    if (!document) return document.error();
+    (*document)["store"] = store.string();
+    print_json(*document);
+    return {};
+  }
+  const auto results = results_text(**reader, summary.run);
+  if (!results) return results.error();
+  const std::string named = options.store.empty() ? "" : fmt::format(" --store {}", store.string());
+  fmt::print("{}\nRun {} is in {}\n", *results, summary.run, store.string());
+  fmt::print("Next: fogbench show {0}{1}, fogbench export {0}{1} -o run-{0}.csv\n", summary.run,
+             named);
+  return {};
+}
+
+Result<ExitStatus> run_dry_run(const DryRunOptions& options) {
+  const auto parameters = parse_parameters(options.procedure.set);
+  if (!parameters) return parameters.error();
+  auto setup = daemon::load_setup({options.procedure.bench, options.scenario});
+  if (!setup) return setup.error();
+  const std::string bench = setup->bench.name;
+  const auto planned =
+      daemon::plan_procedure(options.procedure.procedure, setup->bench, *parameters);
+  if (!planned) return planned.error();
+  const auto store = store_path(options.store);
+  if (!store) return store.error();
+  const std::uint64_t seed = options.seed.value_or(daemon::random_seed());
+
+  daemon::SimulatedOperator person;
+  auto session = daemon::Session::open(std::move(*setup), seed, *store, options.speed, person);
+  if (!session) return session.error();
+  procedures::RunEngine& engine = (*session)->engine();
+  const daemon::AbortOnSignal abort_on_signal(engine);
+  if (!options.json) print_heading(planned->plan, options, bench, seed);
+  std::fflush(stdout);
+
+  ProgressLine progress;
+  std::size_t points = 0;
+  engine.on_progress([&](const procedures::Progress& now) { progress.show(now); });
+  engine.on_point([&](const Point& point) {
+    ++points;
+    if (options.json) return;
+    progress.clear();
+    print_point(points, point);
+  });
+  const auto summary = (*session)->run(*planned);
+  progress.clear();
+  if (!summary) return summary.error();
+
+  if (const Status printed = print_results(*store, *summary, options); !printed) {
+    return printed.error();
+  }
+  if (summary->end.outcome == RunOutcome::kCompleted) return ExitStatus::kDone;
+  return Error{
+      summary->end.outcome == RunOutcome::kAborted ? ErrorCode::kAborted : ErrorCode::kDevice,
+      fmt::format("run {} {}: {}; the bench is {}", summary->run,
+                  summary->end.outcome == RunOutcome::kAborted ? "aborted" : "failed",
+                  summary->end.reason,
+                  summary->end.safe_state_reached ? "in its safe state" : "NOT in its safe state")};
+}
+
+}  // namespace
+
+void add_dry_run(CLI::App& app, Action& action) {
+  add_command<DryRunOptions>(
+      app, action, "dry-run", "Run a procedure on the simulated bench and log it",
+      "  fogbench dry-run acceptance\n"
+      "  fogbench dry-run coil-sweep --scenario hysteresis-z --seed 42 --store try.db\n"
+      "The same procedure, bench, scenario and seed give the same measurements.",
+      [](CLI::App& command, DryRunOptions& options) {
+        add_procedure_options(command, options.procedure);
+        command.add_option(
+            "--scenario", options.scenario,
+            "What the simulated gyro hides: a file, or a ready one (default: clean)");
+        daemon::add_seed_option(command, options.seed);
+        add_store_option(command, options.store);
+        daemon::add_speed_option(command, options.speed, "max");
+        command.add_flag("--json", options.json, "One JSON document on stdout, at the end");
+      },
+      run_dry_run);
+}
+
+}  // namespace fogbench::cli

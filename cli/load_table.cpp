@@ -1,0 +1,142 @@
+#include "cli/load_table.hpp"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+
+#include "cli/common_options.hpp"
+#include "cli/output.hpp"
+#include "daemon/export.hpp"
+#include "daemon/run_log_reader.hpp"
+#include "daemon/run_table.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+using Renames = std::map<std::string, std::string>;
+
+std::optional<std::int64_t> run_number(std::string_view text) {
+  std::int64_t run = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), run);
+  if (error != std::errc{} || end != text.data() + text.size() || run < 1) return {};
+  return run;
+}
+
+Result<Renames> parse_renames(const std::vector<std::string>& columns) {
+  Renames renames;
+  for (const std::string& column : columns) {
+    const std::size_t equals = column.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == column.size()) {
+      return Error{
+          ErrorCode::kUsage,
+          fmt::format("--column {}: wanted=name was expected, such as rate_deg_per_h=omega",
+                      column)};
+    }
+    renames[column.substr(0, equals)] = column.substr(equals + 1);
+  }
+  return renames;
+}
+
+Result<model::Table> load_run(const std::string& store, std::int64_t run, const Renames& renames,
+                              bool unfinished) {
+  const auto path = store_path(store);
+  if (!path) return path.error();
+  auto reader = daemon::RunLogReader::open(*path);
+  if (!reader) return reader.error();
+  const auto points = daemon::valid_points(**reader, run, unfinished);
+  if (!points) return points.error();
+  const auto info = (*reader)->run(run);
+  if (!info) return info.error();
+  if (!info->completed()) {
+    print_note(fmt::format("run {} was not completed ({})", run, info->outcome()));
+  }
+  model::Table table = daemon::to_table(*points);
+  for (const auto& [wanted, name] : renames) {
+    if (!table.has(name)) {
+      return Error{ErrorCode::kBadInput, fmt::format("run {}: no column {}", run, name)};
+    }
+    const auto values = table.column(name);
+    table.set_column(wanted, {values.begin(), values.end()});
+  }
+  return table;
+}
+
+/// "7", "STORE.db#7" or a CSV file.
+Result<model::Table> load_one(const std::string& data, const DataOptions& options,
+                              const Renames& renames) {
+  if (const auto run = run_number(data)) {
+    return load_run(options.store, *run, renames, options.unfinished);
+  }
+  const std::size_t hash = data.rfind('#');
+  if (hash != std::string::npos && hash > 0) {
+    if (const auto run = run_number(std::string_view(data).substr(hash + 1))) {
+      return load_run(data.substr(0, hash), *run, renames, options.unfinished);
+    }
+  }
+  return model::read_csv(data, renames);
+}
+
+void name_runs_after(const std::string& data, model::Table& table) {
+  model::TextColumn run = table.run();
+  for (std::string& value : run.values) value = fmt::format("{}/{}", data, value);
+  table.set_run(std::move(run));
+}
+
+}  // namespace
+
+void add_data_options(CLI::App& command, DataOptions& options, DataCount count) {
+  CLI::Option* data =
+      command
+          .add_option("DATA", options.data,
+                      "Measurements: the number of a run, STORE.db#NUMBER, or a CSV file")
+          ->required();
+  if (count == DataCount::kOne) data->expected(1);
+  command
+      .add_option("--column", options.columns,
+                  "wanted=name: take this column from one of another name")
+      ->allow_extra_args(false);
+  command.add_option("--segment", options.segment,
+                     "Only rows whose segment matches, such as 'coil_z/*'");
+  command.add_flag("--unfinished", options.unfinished,
+                   "Take runs that were interrupted, aborted or failed too");
+  add_store_option(command, options.store);
+}
+
+Result<model::Table> load_table(const DataOptions& options) {
+  const auto renames = parse_renames(options.columns);
+  if (!renames) return renames.error();
+  std::optional<model::Table> all;
+  for (const std::string& data : options.data) {
+    auto table = load_one(data, options, *renames);
+    if (!table) return table.error();
+    if (options.data.size() > 1) name_runs_after(data, *table);
+    if (all) {
+      all->append(*table);
+    } else {
+      all = std::move(*table);
+    }
+  }
+  if (!all) return Error{ErrorCode::kUsage, "no measurements were named"};
+  if (options.segment.empty()) return *all;
+
+  std::vector<bool> matches;
+  for (const std::string& segment : all->segment().values) {
+    matches.push_back(fnmatch(options.segment.c_str(), segment.c_str(), 0) == 0);
+  }
+  std::vector<bool> keep(all->rows());
+  for (std::size_t row = 0; row < keep.size(); ++row) {
+    keep[row] = matches[all->segment().index[row]];
+  }
+  if (std::find(keep.begin(), keep.end(), true) == keep.end()) {
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("no row's segment matches {}; the segments are {}", options.segment,
+                             fmt::join(all->segment().values, ", "))};
+  }
+  return all->select(keep);
+}
+
+}  // namespace fogbench::cli

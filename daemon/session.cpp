@@ -1,0 +1,154 @@
+#include "daemon/session.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "config/json_file.hpp"
+#include "config/paths.hpp"
+#include "drivers/open_bench.hpp"
+#include "simulator/simulated_bench.hpp"
+
+namespace fogbench::daemon {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// {"file.json": "its text"...}: the record holds what was read, to the byte, and no path of this
+/// machine.
+Result<nlohmann::ordered_json> texts_of(const std::vector<fs::path>& files) {
+  nlohmann::ordered_json texts = nlohmann::ordered_json::object();
+  for (const fs::path& file : files) {
+    auto text = config::read_text_file(file);
+    if (!text) return text.error();
+    texts[file.filename().string()] = std::move(*text);
+  }
+  return texts;
+}
+
+/// The bench's file and the device files that it names.
+Result<std::vector<fs::path>> files_of_bench(const fs::path& file) {
+  const auto bench = config::read_json_file(file);
+  if (!bench) return bench.error();
+  std::set<fs::path> devices;
+  for (const auto& instrument : *bench) {
+    if (instrument.is_object() && instrument.contains("device")) {
+      devices.insert(file.parent_path() / instrument["device"].get<std::string>());
+    }
+  }
+  std::vector<fs::path> files{file};
+  files.insert(files.end(), devices.begin(), devices.end());
+  return files;
+}
+
+nlohmann::ordered_json to_json(const Parameters& parameters) {
+  nlohmann::ordered_json values = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : parameters) {
+    std::visit([&, &key = name](const auto& v) { values[key] = v; }, value);
+  }
+  return values;
+}
+
+}  // namespace
+
+Result<Setup> load_setup(const SetupOptions& options) {
+  const auto bench_file = config::find_config("benches", options.bench);
+  if (!bench_file) return bench_file.error();
+  const auto scenario_file = config::find_config("scenarios", options.scenario);
+  if (!scenario_file) return scenario_file.error();
+  auto bench = config::load_bench(*bench_file);
+  if (!bench) return bench.error();
+  auto scenario = config::load_scenario(*scenario_file);
+  if (!scenario) return scenario.error();
+
+  const auto bench_files = files_of_bench(*bench_file);
+  if (!bench_files) return bench_files.error();
+  const auto bench_texts = texts_of(*bench_files);
+  if (!bench_texts) return bench_texts.error();
+  auto scenario_text = config::read_text_file(*scenario_file);
+  if (!scenario_text) return scenario_text.error();
+  return Setup{std::move(*bench), bench_texts->dump(), std::move(*scenario),
+               std::move(*scenario_text)};
+}
+
+Status check_simulated(const config::BenchConfig& bench) {
+  const std::pair<const char*, const config::InstrumentConfig*> instruments[] = {
+      {"thermostat", &bench.thermostat},       {"coil_horizontal", &bench.coil_horizontal},
+      {"coil_vertical", &bench.coil_vertical}, {"magnetometer", &bench.magnetometer},
+      {"turntable", &bench.turntable},         {"gyro", &bench.gyro}};
+  for (const auto& [name, instrument] : instruments) {
+    if (instrument->connection == "simulated") continue;
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("bench {}: /{}/connection is \"{}\"; this version reaches "
+                             "\"simulated\" instruments only",
+                             bench.name, name, instrument->connection)};
+  }
+  return {};
+}
+
+Result<PlannedProcedure> plan_procedure(const std::string& name, const config::BenchConfig& bench,
+                                        const Parameters& parameters) {
+  const auto file = config::find_config("procedures", name);
+  if (!file) return file.error();
+  const auto procedure = config::load_procedure(*file);
+  if (!procedure) return procedure.error();
+  auto plan = procedures::make_plan(*procedure, bench, parameters);
+  if (!plan) return plan.error();
+  const auto texts = texts_of(plan->files);
+  if (!texts) return texts.error();
+  const nlohmann::ordered_json record{{"files", *texts}, {"parameters", to_json(parameters)}};
+  return PlannedProcedure{std::move(*plan), record.dump()};
+}
+
+Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
+                                               const fs::path& store, Speed speed,
+                                               drivers::Operator& person) {
+  std::unique_ptr<Session> session(new Session(std::move(setup), seed));
+  const Setup& made = session->setup_;
+  if (speed == Speed::kRealtime) {
+    session->clock_ = std::make_unique<drivers::SteadyClock>();
+  } else {
+    // Starts today, so that the record's dates mean something; nothing measured depends on it.
+    session->clock_ = std::make_unique<drivers::VirtualClock>(drivers::SteadyClock().wall_now());
+  }
+  auto log = RunLog::open(store);
+  if (!log) return log.error();
+  session->log_ = std::move(*log);
+  auto transports = simulator::simulate_bench(made.bench, made.scenario, seed, *session->clock_);
+  if (!transports) return transports.error();
+  auto bench = drivers::open_bench(made.bench, std::move(*transports), *session->clock_, person);
+  if (!bench) return bench.error();
+  session->bench_ = std::move(*bench);
+  if (const Status safe = procedures::make_safe(session->bench_); !safe) return safe.error();
+  session->engine_ = std::make_unique<procedures::RunEngine>(
+      made.bench, session->bench_, *session->clock_, person, *session->log_);
+  return session;
+}
+
+Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure) {
+  procedures::RunHeader header;
+  header.procedure = procedure.plan.procedure;
+  header.procedure_json = procedure.procedure_json;
+  header.bench = setup_.bench.name;
+  header.bench_json = setup_.bench_json;
+  header.scenario_json = setup_.scenario_json;
+  header.seed = seed_;
+  header.gyro_serial_number = setup_.bench.gyro.serial_number;
+  header.software_version = FOGBENCH_VERSION;
+  header.started_at =
+      fmt::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(clock_->wall_now()));
+  header.frame_rate_hz = bench_.gyro->frame_rate_hz();
+  header.reference_rate_deg_per_h = setup_.bench.gyro.reference_rate.value;
+  return engine_->run(procedure.plan, header);
+}
+
+std::uint64_t random_seed() {
+  return std::random_device{}();
+}
+
+}  // namespace fogbench::daemon

@@ -1,0 +1,86 @@
+#pragma once
+// One bench, opened and ready, and its run log: what `fogbench dry-run` and fogbenchd share.
+// Everything that can be wrong with the files is found by load_setup and plan_procedure, before
+// Session::open touches a device or writes a byte.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "config/bench.hpp"
+#include "config/result.hpp"
+#include "config/scenario.hpp"
+#include "daemon/run_log.hpp"
+#include "drivers/clock.hpp"
+#include "drivers/instruments.hpp"
+#include "procedures/plan.hpp"
+#include "procedures/run_engine.hpp"
+
+namespace fogbench::daemon {
+
+/// Names as the user gave them: a file, or one of the ready ones.
+struct SetupOptions {
+  std::string bench = "simulated";
+  std::string scenario = "clean";
+};
+
+/// A bench and what its simulated gyro hides, with the exact texts for the record.
+struct Setup {
+  config::BenchConfig bench;
+  std::string bench_json;
+  config::ScenarioConfig scenario;
+  std::string scenario_json;
+};
+
+/// Errors: kBadInput.
+Result<Setup> load_setup(const SetupOptions& options);
+
+/// kBadInput when an instrument is connected to anything but the simulated bench.
+Status check_simulated(const config::BenchConfig& bench);
+
+using Parameters = std::map<std::string, config::ParameterValue>;
+
+struct PlannedProcedure {
+  procedures::Plan plan;
+  std::string procedure_json;  ///< the texts of its files and the parameters given, for the record
+};
+
+/// Errors: kBadInput, kLimit.
+Result<PlannedProcedure> plan_procedure(const std::string& name, const config::BenchConfig& bench,
+                                        const Parameters& parameters);
+
+enum class Speed {
+  kRealtime,
+  kMaximum  ///< on a virtual clock: as fast as the machine can
+};
+
+class Session {
+ public:
+  /// Opens the run log, then the bench, and drives it to its safe state. `person` must outlive the
+  /// session. Errors: kStore, and the instruments'.
+  static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
+                                               const std::filesystem::path& store, Speed speed,
+                                               drivers::Operator& person);
+
+  /// Runs one procedure to its end in the safe state. Errors: as RunEngine::run.
+  Result<procedures::RunSummary> run(const PlannedProcedure& procedure);
+  procedures::RunEngine& engine() { return *engine_; }
+
+ private:
+  Session(Setup setup, std::uint64_t seed) : setup_(std::move(setup)), seed_(seed) {}
+
+  Setup setup_;
+  std::uint64_t seed_;
+  std::unique_ptr<drivers::Clock> clock_;
+  std::unique_ptr<RunLog> log_;
+  drivers::Bench bench_;
+  std::unique_ptr<procedures::RunEngine> engine_;
+};
+
+/// A seed that nobody chose, short enough to be typed again.
+std::uint64_t random_seed();
+
+}  // namespace fogbench::daemon
