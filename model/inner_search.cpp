@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <span>
 
 namespace fogbench::model {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 /// A search may leave the typical range by this factor before it is stopped.
 constexpr double kBeyondRange = 10.0;
 /// Up to this many rows times parameters, several strategies are tried and the best one is kept.
-constexpr std::size_t kFewEnoughForAll = 100'000;
+constexpr std::size_t kFewEnoughForAll = 10'000;
 
 std::optional<LinearFit> fit_at(const Observations& observations, const Eigen::VectorXd& inner,
                                 bool with_tangents) {
@@ -225,17 +226,28 @@ Result<InnerSolution> search_inner(const Observations& observations) {
   Result<InnerSolution> start = solution_at(observations, inner);
   if (!start || count == 0) return start;
   silence_ceres();
-  const bool all = observations.taken().size() * parameters.size() <= kFewEnoughForAll;
   Eigen::VectorXd best = inner;
   double least = start->fit.residual_sum_of_squares;
-  for (const Strategy& strategy : kStrategies) {
-    const Eigen::VectorXd found = polish(observations, descend(observations, inner, strategy));
+  const auto attempt = [&](const Eigen::VectorXd& from, const Strategy& strategy) {
+    const Eigen::VectorXd found = polish(observations, descend(observations, from, strategy));
     const double cost = cost_at(observations, found);
-    if (cost < least) {
-      least = cost;
-      best = found;
+    if (!(cost < least)) return;
+    least = cost;
+    best = found;
+  };
+  attempt(inner, kStrategies[0]);
+  if (observations.taken().size() * parameters.size() > kFewEnoughForAll) {
+    return solution_at(observations, best);
+  }
+  // Small problems: every strategy, and starts about the given one, as a descent may end in a
+  // poorer minimum or on a plain.
+  for (const Strategy& strategy : std::span(kStrategies).subspan(1)) attempt(inner, strategy);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (const double factor : {0.5, 2.0}) {
+      Eigen::VectorXd moved = inner;
+      moved[i] *= factor;
+      attempt(moved, kStrategies[0]);
     }
-    if (!all) break;
   }
   return solution_at(observations, best);
 }
