@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/fit.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -17,7 +18,7 @@ using config::ModelFile;
 using config::ModelTerm;
 using nlohmann::json;
 
-const std::string kFolder = std::string(FOGBENCH_SOURCE_DIR) + "/tests/data/nist/";
+const std::string kFolder = (tests::source_tree() / "tests/data/nist").string() + "/";
 
 json problems(const std::string& file) {
   std::ifstream in(kFolder + file);
