@@ -67,6 +67,9 @@ class ProjectedResidual final : public ceres::CostFunction {
   int parameters_;
 };
 
+/// So many attempts that end in the same minimum, and no better one: enough.
+constexpr int kAgreement = 2;
+
 struct Strategy {
   ceres::TrustRegionStrategyType trust_region;
   ceres::DoglegType dogleg;
@@ -112,9 +115,9 @@ Eigen::VectorXd descend(const Observations& observations, Eigen::VectorXd inner,
   options.jacobi_scaling = strategy.jacobi_scaling;
   options.initial_trust_region_radius = strategy.initial_radius;
   options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 1000;
+  options.max_num_iterations = 300;
   options.max_num_consecutive_invalid_steps = 50;
-  options.function_tolerance = 1e-15;
+  options.function_tolerance = 1e-14;
   options.gradient_tolerance = 1e-30;
   options.parameter_tolerance = 1e-14;
   options.logging_type = ceres::SILENT;
@@ -228,10 +231,16 @@ Result<InnerSolution> search_inner(const Observations& observations) {
   silence_ceres();
   Eigen::VectorXd best = inner;
   double least = start->fit.residual_sum_of_squares;
+  int agreed = 0;  // attempts that ended in the best minimum so far
   const auto attempt = [&](const Eigen::VectorXd& from, const Strategy& strategy) {
+    if (agreed >= kAgreement) return;
     const Eigen::VectorXd found = polish(observations, descend(observations, from, strategy));
     const double cost = cost_at(observations, found);
-    if (!(cost < least)) return;
+    if (!(cost < least)) {
+      if (cost <= least * (1.0 + 1e-6)) ++agreed;
+      return;
+    }
+    agreed = cost >= least * (1.0 - 1e-6) ? agreed + 1 : 1;
     least = cost;
     best = found;
   };

@@ -1,0 +1,191 @@
+// fogbench fit: fits an error model to measurements and writes the fitted model file.
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "cli/load_table.hpp"
+#include "cli/output.hpp"
+#include "config/output_file.hpp"
+#include "config/paths.hpp"
+#include "daemon/file_hash.hpp"
+#include "model/fit.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+/// Correlations above this are printed.
+constexpr double kTellCorrelation = 0.9;
+
+struct FitCommandOptions {
+  DataOptions data;
+  std::string model;
+  std::string output;
+  std::string weight_by;
+  model::FitOptions::Noise noise = model::FitOptions::Noise::kAuto;
+  bool json = false;
+};
+
+struct Correlation {
+  std::string a, b;
+  double value;
+};
+
+std::vector<Correlation> strong_correlations(const model::FitResult& result) {
+  std::vector<std::string> names;
+  for (const model::Estimate& e : result.estimates) {
+    if (!e.held) names.push_back(e.name);
+  }
+  std::vector<Correlation> strong;
+  for (Eigen::Index i = 0; i < result.covariance.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double r =
+          result.covariance(i, j) / std::sqrt(result.covariance(i, i) * result.covariance(j, j));
+      if (!(std::abs(r) > kTellCorrelation)) continue;
+      strong.push_back({names[static_cast<std::size_t>(j)], names[static_cast<std::size_t>(i)], r});
+    }
+  }
+  return strong;
+}
+
+std::string number(double value) {
+  return std::isnan(value) ? "-" : fmt::format("{:.6g}", value);
+}
+
+void print_result(const model::FitResult& result, const FitCommandOptions& options,
+                  const std::string& observable) {
+  using Align = TextTable::Align;
+  TextTable table({{"term", "", Align::kLeft},
+                   {"estimate", "", Align::kRight},
+                   {"std error", "", Align::kRight},
+                   {"expanded", "95.45 %", Align::kRight},
+                   {"unit", "", Align::kLeft}});
+  for (const model::Estimate& e : result.estimates) {
+    const double expanded = e.coverage_factor * e.standard_error;
+    table.add_row({e.name, number(e.value), e.held ? "held" : number(e.standard_error),
+                   e.held ? "" : number(expanded), e.unit});
+  }
+  fmt::print("{}\n", table.text());
+  fmt::print("{} rows, {:g} degrees of freedom, RMS {:.6g} (unit of {})\n", result.rows.size(),
+             result.degrees_of_freedom, result.rms, observable);
+  if (result.coloured) {
+    const config::NoiseCoefficients& noise = result.noise.noise;
+    fmt::print("noise: N {:.4g} deg/sqrt(h), B {:.4g} deg/h, K {:.4g} deg/h/sqrt(h)\n",
+               noise.angle_random_walk_deg_per_sqrt_h, noise.bias_instability_deg_per_h,
+               noise.rate_random_walk_deg_per_h_per_sqrt_h);
+  }
+  if (!result.noise.says.empty()) fmt::print("noise: {}\n", result.noise.says);
+  for (const Correlation& c : strong_correlations(result)) {
+    fmt::print("correlation {:+.3f}: {} with {}\n", c.value, c.a, c.b);
+  }
+  for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
+  fmt::print("\nWritten to {}\nNext: fogbench compare {} --model {}\n", options.output,
+             options.data.data.front(), options.output);
+}
+
+nlohmann::json to_json(const model::FitResult& result) {
+  nlohmann::json estimates = nlohmann::json::array();
+  for (const model::Estimate& e : result.estimates) {
+    estimates.push_back({{"name", e.name},
+                         {"unit", e.unit},
+                         {"value", e.value},
+                         {"standard_error", e.standard_error},
+                         {"expanded_uncertainty", e.coverage_factor * e.standard_error},
+                         {"coverage_factor", e.coverage_factor},
+                         {"held", e.held}});
+  }
+  nlohmann::json correlations = nlohmann::json::array();
+  for (const Correlation& c : strong_correlations(result)) {
+    correlations.push_back({{"between", {c.a, c.b}}, {"correlation", c.value}});
+  }
+  const config::NoiseCoefficients& noise = result.noise.noise;
+  nlohmann::json document = {{"estimates", estimates},
+                             {"correlations", correlations},
+                             {"rows", result.rows.size()},
+                             {"degrees_of_freedom", result.degrees_of_freedom},
+                             {"rms", result.rms},
+                             {"residual_sum_of_squares", result.residual_sum_of_squares},
+                             {"residual_standard_deviation", result.residual_standard_deviation},
+                             {"warnings", result.warnings}};
+  document["noise"] = {{"coloured", result.coloured}, {"says", result.noise.says}};
+  if (result.coloured) {
+    document["noise"]["N_deg_per_sqrt_h"] = noise.angle_random_walk_deg_per_sqrt_h;
+    document["noise"]["B_deg_per_h"] = noise.bias_instability_deg_per_h;
+    document["noise"]["K_deg_per_h_per_sqrt_h"] = noise.rate_random_walk_deg_per_h_per_sqrt_h;
+  }
+  return document;
+}
+
+/// Where the numbers came from, and when.
+Status sign(config::FitRecord& record, const DataOptions& data) {
+  for (const std::string& name : data.data) {
+    record.data += (record.data.empty() ? "" : ", ") + name;
+    if (!std::filesystem::is_regular_file(name)) continue;
+    const Result<std::string> hash = daemon::file_sha256(name);
+    if (!hash) return hash.error();
+    record.data_sha256 += (record.data_sha256.empty() ? "" : ", ") + *hash;
+  }
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  record.fitted_at = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+  record.software_version = FOGBENCH_VERSION;
+  return {};
+}
+
+Result<ExitStatus> run_fit(const FitCommandOptions& options) {
+  const Result<std::filesystem::path> file = config::find_config("models", options.model);
+  if (!file) return file.error();
+  const Result<config::ModelFile> model = config::load_model(*file);
+  if (!model) return model.error();
+  const Result<model::Table> table = load_table(options.data);
+  if (!table) return table.error();
+  Result<model::FitResult> result =
+      model::fit(*table, *model, {.noise = options.noise, .weight_by = options.weight_by});
+  if (!result) return result.error();
+  if (Status signed_ok = sign(*result->fitted.fit, options.data); !signed_ok) {
+    return signed_ok.error();
+  }
+  const std::string text = config::to_json_text(result->fitted);
+  if (Status written = config::write_file(options.output, text); !written) return written.error();
+  if (options.json) {
+    nlohmann::json document = to_json(*result);
+    document["file"] = options.output;
+    print_json(document);
+  } else {
+    print_result(*result, options, model->observable);
+  }
+  return ExitStatus::kDone;
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, Action& action) {
+  using Noise = model::FitOptions::Noise;
+  add_command<FitCommandOptions>(
+      app, action, "fit", "Fit an error model to measurements",
+      "  fogbench fit 7 --model magnetic -o fitted.json\n"
+      "  fogbench fit config/data/paper-thermal.csv --model paper-thermal -o fitted.json\n",
+      [](CLI::App& command, FitCommandOptions& options) {
+        add_data_options(command, options.data, DataCount::kSeveral);
+        command.add_option("--model", options.model, "Model file, or a ready model's name")
+            ->required();
+        command.add_option("-o,--output", options.output, "Where to write the fitted model")
+            ->required();
+        command.add_option("--weight-by", options.weight_by, "Column of standard deviations");
+        command
+            .add_option("--noise", options.noise,
+                        "auto, independent or coloured (needs time_s and duration_s)")
+            ->transform(CLI::CheckedTransformer(
+                std::map<std::string, Noise>{{"auto", Noise::kAuto},
+                                             {"independent", Noise::kIndependent},
+                                             {"coloured", Noise::kColoured}}));
+        command.add_flag("--json", options.json, "One JSON document");
+      },
+      run_fit);
+}
+
+}  // namespace fogbench::cli

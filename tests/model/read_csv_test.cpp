@@ -1,0 +1,184 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <fstream>
+
+#include "model/table.hpp"
+#include "model/write_csv.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fogbench::model {
+namespace {
+
+using support::TemporaryFolder;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+class ReadCsv : public testing::Test {
+ protected:
+  Result<Table> read(const std::string& text,
+                     const std::map<std::string, std::string>& renames = {}) {
+    const std::filesystem::path file = folder_ / "data.csv";
+    std::ofstream(file, std::ios::binary) << text;
+    return read_csv(file, renames);
+  }
+  /// The error's text after the file's name.
+  std::string error(const std::string& text,
+                    const std::map<std::string, std::string>& renames = {}) {
+    const auto table = read(text, renames);
+    if (table) return "no error";
+    EXPECT_EQ(table.error().code, ErrorCode::kBadInput);
+    EXPECT_EQ(table.error().message.find('\n'), std::string::npos);
+    const std::string name = (folder_ / "data.csv").string();
+    EXPECT_EQ(table.error().message.substr(0, name.size()), name);
+    return table.error().message.substr(name.size());
+  }
+
+  TemporaryFolder folder_;
+};
+
+std::vector<double> values(const Table& table, const std::string& name) {
+  const auto column = table.column(name);
+  return {column.begin(), column.end()};
+}
+
+TEST_F(ReadCsv, ReadsNumbersTextsAndMissingValues) {
+  const auto table = read(
+      "\xEF\xBB\xBFrun, segment ,time_s,rate_deg_per_h,other\r\n"
+      "1,\"coil_z/down, \"\"slow\"\"\",10,-1.5e-3,7\r\n"
+      "1,coil_z/up, +20 ,,8\r\n"
+      "\r\n"
+      "2,coil_z/up,nan,NaN,\"9\"");
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_EQ(table->rows(), 3u);
+  EXPECT_THAT(values(*table, "other"), ElementsAre(7, 8, 9));
+  EXPECT_EQ(table->column("time_s")[1], 20.0);
+  EXPECT_EQ(table->column("rate_deg_per_h")[0], -1.5e-3);
+  EXPECT_TRUE(std::isnan(table->column("rate_deg_per_h")[1]));
+  EXPECT_TRUE(std::isnan(table->column("time_s")[2]));
+  EXPECT_EQ(table->segment().at(0), "coil_z/down, \"slow\"");
+  EXPECT_EQ(table->run().at(2), "2");
+  EXPECT_EQ(table->segment().values.size(), 2u);
+}
+
+TEST_F(ReadCsv, SkipsCommentLinesBeforeTheNames) {
+  const auto table = read("# source: a paper\nrate_deg_per_h\n1\n2\n");
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_THAT(values(*table, "rate_deg_per_h"), ElementsAre(1, 2));
+  EXPECT_EQ(table->run().at(1), "1");
+  EXPECT_EQ(table->segment().at(1), "");
+}
+
+TEST_F(ReadCsv, DecimalPointIsADotWhateverTheLocale) {
+  for (const char* name : {"de_DE.UTF-8", "ru_RU.UTF-8", "C.UTF-8"}) {
+    if (std::setlocale(LC_ALL, name) == nullptr) continue;
+    const auto table = read("rate_deg_per_h\n0.25\n");
+    std::setlocale(LC_ALL, "C");
+    ASSERT_TRUE(table);
+    EXPECT_EQ(table->column("rate_deg_per_h")[0], 0.25) << name;
+  }
+}
+
+TEST_F(ReadCsv, RenamesColumnsAndDropsTheOneInTheWay) {
+  const auto table = read("omega,rate_deg_per_h\n1,2\n", {{"rate_deg_per_h", "omega"}});
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_THAT(table->column_names(), ElementsAre("rate_deg_per_h"));
+  EXPECT_EQ(table->column("rate_deg_per_h")[0], 1.0);
+  EXPECT_THAT(error("a\n1\n", {{"rate_deg_per_h", "omega"}}),
+              HasSubstr(":1: column omega: not found"));
+}
+
+TEST_F(ReadCsv, DropsTextInForeignColumnsAndRemembersWhy) {
+  const auto table = read("rate_deg_per_h,operator\n1,Ivanov\n2,3\n");
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_FALSE(table->has("operator"));
+  EXPECT_THAT(table->why_missing("operator"), HasSubstr(":2: column operator: found 'Ivanov'"));
+  EXPECT_THAT(table->why_missing("field_x_ut"), HasSubstr("found only rate_deg_per_h"));
+}
+
+TEST_F(ReadCsv, NamesFileLineColumnAndWhatWasFound) {
+  EXPECT_EQ(error("rate_deg_per_h,time_s\n1,2\n1,abc\n"),
+            ":3: column time_s: found 'abc', expected a finite number or nothing");
+  EXPECT_THAT(error("rate_deg_per_h\n1,5\n"), EndsWith(":2: found 2 fields, expected 1 as in the "
+                                                       "line of names"));
+  EXPECT_THAT(error("rate_deg_per_h,time_s\n1\n"), HasSubstr(":2: found 1 fields, expected 2"));
+  EXPECT_THAT(error("rate_deg_per_h,time_s\n1,2,3,4\n"), HasSubstr("found 4 fields, expected 2"));
+  EXPECT_THAT(error("rate_deg_per_h\n1e999\n"), HasSubstr("found '1e999'"));
+  EXPECT_THAT(error("rate_deg_per_h\ninf\n"), HasSubstr("found 'inf'"));
+  EXPECT_THAT(error("rate_deg_per_h\n-Infinity\n"), HasSubstr("found '-Infinity'"));
+  EXPECT_THAT(error("rate_deg_per_h\n0x10\n"), HasSubstr("found '0x10'"));
+  EXPECT_THAT(error("rate_deg_per_h\n1 2\n"), HasSubstr("found '1 2'"));
+  EXPECT_THAT(error("rate_deg_per_h,segment\n\"1,2\n"), HasSubstr(":2: column rate_deg_per_h: "
+                                                                  "found a quote"));
+}
+
+TEST_F(ReadCsv, RefusesWhatIsNotATable) {
+  EXPECT_THAT(error(""), HasSubstr("found an empty file"));
+  EXPECT_THAT(error("rate_deg_per_h,time_s\n"), HasSubstr("found a header and no rows"));
+  EXPECT_THAT(error("a,b,a\n1,2,3\n"), HasSubstr(":1: column a: found twice"));
+  EXPECT_THAT(error("rate_deg_per_h;time_s\n1;2\n"), HasSubstr("separated by commas"));
+  EXPECT_THAT(error(std::string("\x7f"
+                                "ELF\x02\x01\x01\0\0\0\0",
+                                11)),
+              HasSubstr("a text file?"));
+  EXPECT_THAT(error(std::string("rate_deg_per_h\n1\0\n", 18)), HasSubstr("found '1\\x00'"));
+  EXPECT_THAT(error(std::string("rate_deg_per_h,segment\n1,a\0b\n", 29)),
+              HasSubstr("column segment: found 'a\\x00b'"));
+  const auto directory = read_csv(folder_.path());
+  ASSERT_FALSE(directory);
+  EXPECT_THAT(directory.error().message, HasSubstr("found a directory"));
+  const auto nothing = read_csv(folder_ / "no.csv");
+  ASSERT_FALSE(nothing);
+  EXPECT_THAT(nothing.error().message, HasSubstr("no.csv: cannot be opened"));
+}
+
+TEST_F(ReadCsv, RefusesALineOfTwoGigabytesAtOnce) {
+  const std::filesystem::path file = folder_ / "data.csv";
+  std::ofstream(file) << "rate_deg_per_h\n1\n";
+  // A sparse file: two gigabytes of zeros without a line end.
+  std::filesystem::resize_file(file, std::uintmax_t{2} << 30);
+  const auto table = read_csv(file);
+  ASSERT_FALSE(table);
+  EXPECT_THAT(table.error().message, HasSubstr(":3: found a line longer than 1 MiB"));
+}
+
+TEST_F(ReadCsv, TakesALineOfOneMebibyteAndNoMore) {
+  const std::string fits = "\n1" + std::string((1 << 20) - 1, ' ') + "\n2\n";
+  const auto table = read("rate_deg_per_h" + fits);
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_THAT(values(*table, "rate_deg_per_h"), ElementsAre(1, 2));
+  EXPECT_THAT(error("rate_deg_per_h\n1" + std::string(1 << 20, ' ') + "\n2\n"),
+              HasSubstr(":2: found a line longer"));
+}
+
+TEST_F(ReadCsv, LinesThatStraddleTheBufferStayWhole) {
+  std::string text = "rate_deg_per_h,time_s\n";
+  for (int i = 0; i < 700'000; ++i) text += std::to_string(i) + "," + std::to_string(i) + "\n";
+  const auto table = read(text);
+  ASSERT_TRUE(table) << table.error().message;
+  ASSERT_EQ(table->rows(), 700'000u);
+  for (std::size_t i = 0; i < table->rows(); ++i) {
+    ASSERT_EQ(table->column("time_s")[i], static_cast<double>(i));
+  }
+}
+
+TEST_F(ReadCsv, WhatWasWrittenReadsBack) {
+  const auto table =
+      read("run,segment,time_s,rate_deg_per_h\nb,\"x, \"\"y\"\"\",1,0.1\na,,2,\nb,z,3,-1e-300\n");
+  ASSERT_TRUE(table);
+  const std::filesystem::path copy = folder_ / "copy.csv";
+  ASSERT_TRUE(write_csv(*table, copy));
+  const auto back = read_csv(copy);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->run().at(1), "a");
+  EXPECT_EQ(back->segment().at(0), "x, \"y\"");
+  EXPECT_EQ(back->column("rate_deg_per_h")[0], 0.1);
+  EXPECT_TRUE(std::isnan(back->column("rate_deg_per_h")[1]));
+  EXPECT_EQ(back->column("rate_deg_per_h")[2], -1e-300);
+}
+
+}  // namespace
+}  // namespace fogbench::model
