@@ -40,5 +40,9 @@ void add_dry_run(CLI::App& app, Action& action);
 void add_runs(CLI::App& app, Action& action);
 void add_show(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
+void add_effects(CLI::App& app, Action& action);
+void add_fit(CLI::App& app, Action& action);
+void add_add(CLI::App& app, Action& action);
+void add_compensate(CLI::App& app, Action& action);
 
 }  // namespace fogbench::cli

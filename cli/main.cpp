@@ -24,6 +24,10 @@ void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_runs(app, action);
   fogbench::cli::add_show(app, action);
   fogbench::cli::add_export(app, action);
+  fogbench::cli::add_effects(app, action);
+  fogbench::cli::add_fit(app, action);
+  fogbench::cli::add_add(app, action);
+  fogbench::cli::add_compensate(app, action);
 }
 
 int run(int argc, char** argv) {
