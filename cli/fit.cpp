@@ -14,6 +14,7 @@
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "daemon/file_hash.hpp"
+#include "drivers/clock.hpp"
 #include "model/fit.hpp"
 
 namespace fogbench::cli {
@@ -130,7 +131,7 @@ Status sign(config::FitRecord& record, const DataOptions& data) {
     if (!hash) return hash.error();
     record.data_sha256 += (record.data_sha256.empty() ? "" : ", ") + *hash;
   }
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const auto now = std::chrono::floor<std::chrono::seconds>(drivers::SteadyClock().wall_now());
   record.fitted_at = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
   record.software_version = FOGBENCH_VERSION;
   return {};
