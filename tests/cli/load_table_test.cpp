@@ -1,0 +1,110 @@
+#include "cli/load_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include "cli/common_options.hpp"
+#include "daemon/run_log.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+class LoadTableTest : public testing::Test {
+ protected:
+  LoadTableTest() : store_((folder_ / "store.db").string()) {
+    auto log = daemon::RunLog::open(store_);
+    EXPECT_TRUE(log);
+    for (const bool completed : {true, false}) {
+      EXPECT_TRUE((*log)->begin_run({}, {}));
+      for (const char* segment : {"coil_x/up", "coil_x/down", "coil_z/up"}) {
+        procedures::Point point;
+        point.segment = segment;
+        point.test = 2;
+        point.rate_deg_per_h = 0.5;
+        EXPECT_TRUE((*log)->point(point));
+      }
+      if (completed) {
+        EXPECT_TRUE((*log)->end_run({}));
+      }
+    }
+  }
+
+  void expect_refused(const DataOptions& options, ErrorCode code, const std::string& says) const {
+    const auto table = load_table(options);
+    ASSERT_FALSE(table);
+    EXPECT_EQ(table.error().code, code);
+    EXPECT_NE(table.error().message.find(says), std::string::npos) << table.error().message;
+  }
+
+  support::TemporaryFolder folder_;
+  std::string store_;
+};
+
+TEST_F(LoadTableTest, TakesARunByNumberAndByStore) {
+  for (const auto& options :
+       {DataOptions{.data = {"1"}, .store = store_}, DataOptions{.data = {store_ + "#1"}}}) {
+    const auto table = load_table(options);
+    ASSERT_TRUE(table) << table.error().message;
+    EXPECT_EQ(table->rows(), 3U);
+    EXPECT_EQ(table->column("rate_deg_per_h")[0], 0.5);
+    EXPECT_EQ(table->segment().at(2), "coil_z/up");
+    EXPECT_EQ(table->run().at(0), "2");
+  }
+}
+
+TEST_F(LoadTableTest, KeepsOnlyTheSegmentsThatMatch) {
+  const auto table = load_table({.data = {"1"}, .segment = "coil_x/*", .store = store_});
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rows(), 2U);
+  expect_refused({.data = {"1"}, .segment = "coil_y/*", .store = store_}, ErrorCode::kBadInput,
+                 "the segments are coil_x/up");
+}
+
+TEST_F(LoadTableTest, RenamesColumnsOfCsvAndOfRuns) {
+  const std::string csv = folder_.file("a.csv", "omega,run\n1.5,1\n2.5,1\n").string();
+  const auto table = load_table({.data = {csv}, .columns = {"rate_deg_per_h=omega"}});
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_EQ(table->column("rate_deg_per_h")[1], 2.5);
+  const auto run =
+      load_table({.data = {"1"}, .columns = {"temperature_c=target_c"}, .store = store_});
+  ASSERT_TRUE(run);
+  expect_refused({.data = {"1"}, .columns = {"temperature_c=wings"}, .store = store_},
+                 ErrorCode::kBadInput, "no column wings");
+  expect_refused({.data = {"1"}, .columns = {"omega"}, .store = store_}, ErrorCode::kUsage,
+                 "wanted=name");
+}
+
+TEST_F(LoadTableTest, SeveralTablesKeepTheirRunsApart) {
+  const std::string csv = folder_.file("a.csv", "rate_deg_per_h,run\n1.5,2\n").string();
+  const auto table = load_table({.data = {"1", csv}, .store = store_});
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rows(), 4U);
+  EXPECT_NE(table->run().at(0), table->run().at(3));
+}
+
+TEST_F(LoadTableTest, AnInterruptedRunOnlyOnRequest) {
+  expect_refused({.data = {"2"}, .store = store_}, ErrorCode::kBadInput, "--unfinished");
+  EXPECT_TRUE(load_table({.data = {"2"}, .store = store_, .unfinished = true}));
+}
+
+TEST_F(LoadTableTest, SaysWhatIsNotThere) {
+  expect_refused({.data = {"9"}, .store = store_}, ErrorCode::kBadInput, "no run 9");
+  expect_refused({.data = {"missing.csv"}}, ErrorCode::kBadInput, "missing.csv");
+  expect_refused({.data = {"missing.db#1"}}, ErrorCode::kBadInput, "missing.db");
+}
+
+TEST(Parameters, AreNumbersAndListsOfNumbers) {
+  const auto parameters = parse_parameters({"a=1.5", "b=1,-2e3,3"});
+  ASSERT_TRUE(parameters);
+  EXPECT_EQ(std::get<double>(parameters->at("a")), 1.5);
+  EXPECT_EQ(std::get<std::vector<double>>(parameters->at("b")),
+            (std::vector<double>{1.0, -2000.0, 3.0}));
+  for (const char* wrong : {"a", "=1", "a=", "a=x", "a=1,", "a=inf", "a=1 "}) {
+    const auto refused = parse_parameters({wrong});
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_EQ(refused.error().code, ErrorCode::kUsage);
+  }
+}
+
+}  // namespace
+}  // namespace fogbench::cli
