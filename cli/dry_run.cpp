@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "cli/command.hpp"
 #include "cli/common_options.hpp"
@@ -48,8 +50,22 @@ void print_point(std::size_t number, const Point& point) {
   std::fflush(stdout);
 }
 
-Status print_results(const std::filesystem::path& store, const procedures::RunSummary& summary,
-                     const DryRunOptions& options) {
+/// The ready model for what the plan excites.
+const char* model_for(const procedures::Plan& plan) {
+  const auto has = [&plan](auto is) {
+    return std::any_of(plan.steps.begin(), plan.steps.end(),
+                       [is](const auto& step) { return is(step.action); });
+  };
+  using procedures::SettleTemperature, procedures::SweepLevel;
+  const bool heated =
+      has([](const auto& a) { return std::holds_alternative<SettleTemperature>(a); });
+  const bool swept = has([](const auto& a) { return std::holds_alternative<SweepLevel>(a); });
+  if (heated && swept) return "general";
+  return swept ? "magnetic" : "thermal";
+}
+
+Status print_results(const std::filesystem::path& store, const procedures::Plan& plan,
+                     const procedures::RunSummary& summary, const DryRunOptions& options) {
   auto reader = daemon::RunLogReader::open(store);
   if (!reader) return reader.error();
   if (options.json) {
@@ -63,8 +79,10 @@ Status print_results(const std::filesystem::path& store, const procedures::RunSu
   if (!results) return results.error();
   const std::string named = options.store.empty() ? "" : fmt::format(" --store {}", store.string());
   fmt::print("{}\nRun {} is in {}\n", *results, summary.run, store.string());
-  fmt::print("Next: fogbench show {0}{1}, fogbench export {0}{1} -o run-{0}.csv\n", summary.run,
-             named);
+  fmt::print("Next: fogbench show {0}{1}\n", summary.run, named);
+  fmt::print("      fogbench export {0}{1} -o run-{0}.csv\n", summary.run, named);
+  fmt::print("      fogbench fit {0}{1} --model {2} -o run-{0}-{2}.json\n", summary.run, named,
+             model_for(plan));
   return {};
 }
 
@@ -102,7 +120,7 @@ Result<ExitStatus> run_dry_run(const DryRunOptions& options) {
   progress.clear();
   if (!summary) return summary.error();
 
-  if (const Status printed = print_results(*store, *summary, options); !printed) {
+  if (const Status printed = print_results(*store, planned->plan, *summary, options); !printed) {
     return printed.error();
   }
   if (summary->end.outcome == RunOutcome::kCompleted) return ExitStatus::kDone;
