@@ -87,6 +87,10 @@ Result<ExitStatus> run_effects(const EffectsOptions& options) {
   fmt::print(
       "\nh = field / 100 uT in the gyro's axes, t = temperature - reference temperature.\n"
       "play_w: backlash of half-width w; LPF(u; tau): first-order lag.\n"
+      "Where they are missing, temperature_rate_c_per_h and temperature_acceleration_c_per_h2 are\n"
+      "derived from temperature_c and time_s, time_since_start_s from time_s, and coil_heat from "
+      "the\n"
+      "fields or from coil_current_a.\n"
       "`fogbench effects EFFECT` tells what excites one and what it is confused with.\n");
   return ExitStatus::kDone;
 }

@@ -74,12 +74,6 @@ void print_result(const model::FitResult& result, const FitCommandOptions& optio
   fmt::print("{}\n", table.text());
   fmt::print("{} rows, {:g} degrees of freedom, RMS {:.6g} (unit of {})\n", result.rows.size(),
              result.degrees_of_freedom, result.rms, observable);
-  if (result.coloured) {
-    const config::NoiseCoefficients& noise = result.noise.noise;
-    fmt::print("noise: N {:.4g} deg/sqrt(h), B {:.4g} deg/h, K {:.4g} deg/h/sqrt(h)\n",
-               noise.angle_random_walk_deg_per_sqrt_h, noise.bias_instability_deg_per_h,
-               noise.rate_random_walk_deg_per_h_per_sqrt_h);
-  }
   if (!result.noise.says.empty()) fmt::print("noise: {}\n", result.noise.says);
   for (const Correlation& c : strong_correlations(result)) {
     fmt::print("correlation {:+.3f}: {} with {}\n", c.value, c.a, c.b);

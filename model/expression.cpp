@@ -8,11 +8,9 @@
 namespace fogbench::model {
 namespace {
 
-mu::Parser make_parser() {
-  mu::Parser parser;
+void define_constants(mu::Parser& parser) {
   parser.DefineConst("pi", std::numbers::pi);
   parser.DefineConst("e", std::numbers::e);
-  return parser;
 }
 
 /// For GetUsedVar, which wants an address for every name.
@@ -33,7 +31,8 @@ Result<Expression> Expression::parse(const std::string& term, const std::string&
   std::set<std::string> used;
   try {
     double place = 1.0;
-    mu::Parser parser = make_parser();
+    mu::Parser parser;
+    define_constants(parser);
     // A parameter may be called e or pi: then it is the parameter.
     for (const std::string& name : parameters) parser.DefineVar(name, &place);
     parser.SetVarFactory(any_variable, &place);
@@ -64,12 +63,14 @@ Result<Expression> Expression::parse(const std::string& term, const std::string&
                       name, text, signals.table().why_missing(name)));
     }
   }
+  expression.parser_ = std::make_shared<mu::Parser>();
+  define_constants(*expression.parser_);
   return expression;
 }
 
 Eigen::VectorXd Expression::evaluate(const Signals& signals, std::span<const double> values) const {
   Eigen::VectorXd result(static_cast<Eigen::Index>(signals.rows()));
-  mu::Parser parser = make_parser();
+  mu::Parser& parser = *parser_;
   // Parameters enter as constants: in bulk mode every variable has a value a row.
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     parser.DefineConst(parameters_[i], values[i]);

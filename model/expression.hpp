@@ -8,6 +8,7 @@
 // Names are columns of the table (or signals derived from them) and inner parameters.
 
 #include <Eigen/Core>
+#include <memory>
 #include <set>
 #include <span>
 #include <string>
@@ -16,8 +17,13 @@
 #include "config/result.hpp"
 #include "model/signals.hpp"
 
+namespace mu {
+class Parser;
+}
+
 namespace fogbench::model {
 
+/// Not thread-safe: copies share one parser.
 class Expression {
  public:
   /// `term` names the term in errors; `parameters` are all names that the model declares as inner
@@ -36,6 +42,8 @@ class Expression {
 
  private:
   std::string text_;
+  std::shared_ptr<mu::Parser>
+      parser_;  // shared by copies: making one costs more than a small table
   std::vector<std::string> signals_;
   std::vector<std::string> parameters_;
 };

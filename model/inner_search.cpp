@@ -67,8 +67,12 @@ class ProjectedResidual final : public ceres::CostFunction {
   int parameters_;
 };
 
-/// So many attempts that end in the same minimum, and no better one: enough.
-constexpr int kAgreement = 2;
+/// A residual below this share of the observable's sum of squares is rounding.
+constexpr double kExact = 1e-26;
+/// So many attempts that end in the same minimum, and none in a better one, are enough.
+constexpr int kAgreement = 3;
+/// Costs that differ by less than this share are those of one minimum.
+constexpr double kSameMinimum = 1e-9;
 
 struct Strategy {
   ceres::TrustRegionStrategyType trust_region;
@@ -115,7 +119,7 @@ Eigen::VectorXd descend(const Observations& observations, Eigen::VectorXd inner,
   options.jacobi_scaling = strategy.jacobi_scaling;
   options.initial_trust_region_radius = strategy.initial_radius;
   options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 300;
+  options.max_num_iterations = 1000;
   options.max_num_consecutive_invalid_steps = 50;
   options.function_tolerance = 1e-14;
   options.gradient_tolerance = 1e-30;
@@ -231,16 +235,16 @@ Result<InnerSolution> search_inner(const Observations& observations) {
   silence_ceres();
   Eigen::VectorXd best = inner;
   double least = start->fit.residual_sum_of_squares;
-  int agreed = 0;  // attempts that ended in the best minimum so far
+  const auto y = start->fit.joint.cols() - 1;
+  const double exact = kExact * start->fit.joint.col(y).squaredNorm();
+  int agreed = 0;
   const auto attempt = [&](const Eigen::VectorXd& from, const Strategy& strategy) {
-    if (agreed >= kAgreement) return;
+    if (least <= exact || agreed >= kAgreement) return;
     const Eigen::VectorXd found = polish(observations, descend(observations, from, strategy));
     const double cost = cost_at(observations, found);
-    if (!(cost < least)) {
-      if (cost <= least * (1.0 + 1e-6)) ++agreed;
-      return;
-    }
-    agreed = cost >= least * (1.0 - 1e-6) ? agreed + 1 : 1;
+    if (std::abs(cost - least) <= kSameMinimum * least) ++agreed;
+    if (!(cost < least * (1.0 - kSameMinimum))) return;
+    agreed = 1;
     least = cost;
     best = found;
   };
@@ -248,8 +252,9 @@ Result<InnerSolution> search_inner(const Observations& observations) {
   if (observations.taken().size() * parameters.size() > kFewEnoughForAll) {
     return solution_at(observations, best);
   }
-  // Small problems: every strategy, and starts about the given one, as a descent may end in a
-  // poorer minimum or on a plain.
+  // Small problems: starts about the given one and every strategy, as a descent may end in a poorer
+  // minimum or on a plain.
+  for (const double factor : {0.5, 2.0}) attempt(factor * inner, kStrategies[0]);
   for (const Strategy& strategy : std::span(kStrategies).subspan(1)) attempt(inner, strategy);
   for (Eigen::Index i = 0; i < count; ++i) {
     for (const double factor : {0.5, 2.0}) {

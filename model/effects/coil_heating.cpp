@@ -8,8 +8,7 @@ namespace fogbench::model::effects {
 const FunctionEffect& coil_heating() {
   static const FunctionEffect effect(
       {.id = "coil_heating",
-       .formula =
-           "LPF(h_x^2 + h_y^2 + h_z^2; tau), or of the squared coil current without any field",
+       .formula = "LPF(h_x^2 + h_y^2 + h_z^2; tau)",
        .columns = {""},
        .units = {"deg/h per (100 uT)^2"},
        .signals = {"coil_heat", "time_s"},

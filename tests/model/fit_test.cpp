@@ -87,5 +87,275 @@ TEST(Fit, StandardErrorsAreThoseOfAStraightLine) {
   EXPECT_NEAR(estimate(*line, "slope").coverage_factor, 4.5265, 1e-3);
 }
 
+std::string error_of(const Table& table, const ModelFile& model, const FitOptions& options = {}) {
+  const auto result = fit(table, model, options);
+  if (result) return "no error";
+  EXPECT_EQ(result.error().code, ErrorCode::kBadInput);
+  EXPECT_EQ(result.error().message.find('\n'), std::string::npos);
+  return result.error().message;
+}
+
+/// A sweep of one axis up, down and back, every 200 s a window of 180 s.
+Table field_sweep(int loops) {
+  std::vector<double> time, duration, field;
+  for (int i = 0; i < 24 * loops; ++i) {
+    time.push_back(100.0 + 200.0 * i);
+    duration.push_back(180.0);
+    const int step = i % 24;
+    const int level = step <= 6 ? step : step <= 18 ? 12 - step : step - 24;
+    field.push_back(50.0 * level);
+  }
+  Table table;
+  table.set_column("time_s", time);
+  table.set_column("duration_s", duration);
+  table.set_column("field_z_ut", field);
+  return table;
+}
+
+/// The observable from a model with all its coefficients, plus white noise.
+void simulate(Table& table, const ModelFile& truth, double sigma, unsigned seed) {
+  const auto clean = predict(table, truth);
+  ASSERT_TRUE(clean) << clean.error().message;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, sigma);
+  std::vector<double> rate;
+  for (const double value : *clean) rate.push_back(value + noise(random));
+  table.set_column("rate_deg_per_h", rate);
+}
+
+ModelFile hysteresis_truth() {
+  ModelTerm bias = term("bias"), linear = term("magnetic_linear_z");
+  ModelTerm play = term("magnetic_hysteresis_z");
+  bias.coefficient = 0.7;
+  linear.coefficient = -0.25;
+  play.coefficient = 0.12;
+  play.parameters = {{"width", 0.6}};
+  return model_of({bias, linear, play});
+}
+
+TEST(Fit, FindsAnInnerParameterThatNobodyGave) {
+  Table table = field_sweep(3);
+  simulate(table, hysteresis_truth(), 0.002, 7);
+  const auto found =
+      fit(table, model_of({term("bias"), term("magnetic_linear_z"), term("magnetic_hysteresis_z")}),
+          {.noise = FitOptions::Noise::kIndependent});
+  ASSERT_TRUE(found) << found.error().message;
+  const double truth[] = {0.7, -0.25, 0.12, 0.6};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Estimate& e = found->estimates[i];
+    EXPECT_LT(std::abs(e.value - truth[i]), 4.0 * e.standard_error) << e.name;
+    EXPECT_GT(e.standard_error, 0.0) << e.name;
+  }
+  EXPECT_EQ(found->estimates[3].name, "magnetic_hysteresis_z.width");
+  EXPECT_NEAR(found->residual_standard_deviation, 0.002, 0.0005);
+  // What was fitted can be read as a model again, and predicts what was fitted.
+  const auto again = predict(table, found->fitted);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_LT((*again - found->predicted).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(found->fitted.fit->parameter_names.size(), 4u);
+}
+
+TEST(Fit, ColouredNoiseIsEstimatedWithTheCoefficients) {
+  Table table = field_sweep(6);
+  simulate(table, hysteresis_truth(), 0.005, 11);
+  const auto found =
+      fit(table, model_of({term("bias"), term("magnetic_linear_z"), term("magnetic_hysteresis_z")}),
+          {});
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_TRUE(found->coloured);
+  const double truth[] = {0.7, -0.25, 0.12, 0.6};
+  for (std::size_t i = 1; i < 4; ++i) {
+    const Estimate& e = found->estimates[i];
+    EXPECT_LT(std::abs(e.value - truth[i]), 4.0 * e.standard_error) << e.name;
+  }
+  // 5 mdeg/h in 180 s is N = 0.00112 deg/sqrt(h).
+  EXPECT_NEAR(found->noise.noise.angle_random_walk_deg_per_sqrt_h, 0.00112, 0.0003);
+  EXPECT_EQ(found->whitened.size(), found->residual.size());
+}
+
+TEST(Fit, HeldCoefficientsStayAndTheOthersAdapt) {
+  Table table;
+  table.set_column("field_x_ut", {0, 100, 200, 300});
+  table.set_column("rate_deg_per_h", {1.0, 3.0, 5.0, 7.0});
+  ModelTerm linear = term("magnetic_linear_x");
+  linear.coefficient = 1.0;
+  linear.fixed = true;
+  const auto found = fit(table, model_of({term("bias"), linear}), {});
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->estimates[1].held);
+  EXPECT_EQ(found->estimates[1].value, 1.0);
+  EXPECT_NEAR(found->estimates[0].value, 2.5, 1e-12);  // mean of 1, 2, 3, 4
+}
+
+TEST(Fit, AsIsHoldsEveryGivenCoefficient) {
+  ModelTerm bias = term("bias"), linear = term("temperature_linear");
+  ModelTerm quadratic = term("temperature_quadratic");
+  bias.coefficient = 1.197;
+  linear.coefficient = -0.108;
+  quadratic.coefficient = 0.004;
+  const ModelFile published = model_of({bias, linear, quadratic});
+  const auto held = fit(published_thermal(), published, {.as_is = true});
+  ASSERT_TRUE(held) << held.error().message;
+  // 1.197 - 0.108 x 34 + 0.004 x 34^2 = 2.149 where the table has 1.564.
+  EXPECT_NEAR(held->predicted[5], 2.149, 1e-12);
+  EXPECT_NEAR(held->residual[5], -0.585, 1e-12);
+  // The noise is what the free fit of the same terms leaves: RMS 0.05518 of 6 rows, 3 free.
+  EXPECT_NEAR(held->standard_deviation[5], 0.05518 * std::sqrt(2.0), 1e-5);
+  EXPECT_THAT(
+      error_of(published_thermal(), model_of({bias, term("temperature_linear")}), {.as_is = true}),
+      HasSubstr("term temperature_linear: has no coefficient"));
+}
+
+TEST(Fit, DependentTermsAreNamedAndLeftOut) {
+  Table table;
+  table.set_column("field_x_ut", {100, 100, 100, 100});
+  table.set_column("rate_deg_per_h", {1.0, 1.1, 0.9, 1.0});
+  const auto found = fit(table, model_of({term("bias"), term("magnetic_linear_x")}), {});
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->warnings.size(), 1u);
+  EXPECT_THAT(found->warnings[0], HasSubstr("cannot separate magnetic_linear_x from bias"));
+  EXPECT_NEAR(found->estimates[0].value, 1.0, 1e-12);
+  EXPECT_TRUE(std::isnan(found->estimates[1].value));
+  EXPECT_TRUE(std::isnan(found->estimates[1].standard_error));
+  EXPECT_EQ(found->degrees_of_freedom, 3.0);
+  EXPECT_EQ(found->fitted.terms.size(), 1u);
+  ASSERT_TRUE(predict(table, found->fitted));
+}
+
+TEST(Fit, TermThatIsZeroEverywhereIsNamed) {
+  Table table;
+  table.set_column("field_x_ut", {0, 0, 0});
+  table.set_column("rate_deg_per_h", {1.0, 1.1, 0.9});
+  const auto found = fit(table, model_of({term("bias"), term("magnetic_linear_x")}), {});
+  ASSERT_TRUE(found);
+  EXPECT_THAT(found->warnings.at(0), HasSubstr("zero in every row"));
+}
+
+TEST(Fit, AsManyUnknownsAsRowsHasNoUncertainty) {
+  Table table;
+  table.set_column("x", {1, 2});
+  table.set_column("rate_deg_per_h", {1, 3});
+  const auto found = fit(table, model_of({term("bias"), formula("slope", "x")}), {});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->estimates[1].value, 2.0, 1e-12);
+  EXPECT_TRUE(std::isnan(found->estimates[1].standard_error));
+  EXPECT_THAT(found->warnings.at(0), HasSubstr("uncertainty is unknown"));
+}
+
+TEST(Fit, OneRowGivesABias) {
+  Table table;
+  table.set_column("rate_deg_per_h", {1.5});
+  const auto found = fit(table, model_of({term("bias")}), {});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->estimates[0].value, 1.5);
+}
+
+TEST(Fit, MissingRowsAreLeftOutAndTheirOrderDoesNotMatter) {
+  Table table;
+  table.set_column("time_s", {3, 1, 2, 4});
+  table.set_column("field_x_ut", {300, 100, kMissing, 400});
+  table.set_column("rate_deg_per_h", {3, 1, 7, 4});
+  const auto found = fit(table, model_of({term("magnetic_linear_x")}), {});
+  ASSERT_TRUE(found);
+  EXPECT_THAT(found->rows, testing::ElementsAre(1, 0, 3));
+  EXPECT_NEAR(found->estimates[0].value, 1.0, 1e-12);
+  const auto everywhere = predict(table, found->fitted);
+  ASSERT_TRUE(everywhere);
+  EXPECT_NEAR((*everywhere)[0], 3.0, 1e-12);
+  EXPECT_TRUE(std::isnan((*everywhere)[2]));
+}
+
+TEST(Fit, ErrorsNameWhatIsWrong) {
+  Table table;
+  table.set_column("rate_deg_per_h", {1, 2, 3});
+  table.set_column("x", {-1, 0, 1});
+  table.set_column("empty", {kMissing, kMissing, kMissing});
+  EXPECT_THAT(error_of(table, model_of({term("bais")})), HasSubstr("unknown effect 'bais'"));
+  EXPECT_THAT(error_of(table, model_of({term("magnetic_linear_x")})),
+              HasSubstr("term magnetic_linear_x: column field_x_ut"));
+  EXPECT_THAT(error_of(table, model_of({})), HasSubstr("no terms"));
+  EXPECT_THAT(error_of(table, model_of({term("bias")}, "omega")), HasSubstr("column omega"));
+  EXPECT_THAT(error_of(table, model_of({term("bias")}, "empty")),
+              HasSubstr("column empty: found no number"));
+  EXPECT_THAT(error_of(table, model_of({term("bias"), formula("a", "x"), formula("b", "x^2"),
+                                        formula("c", "x^3")})),
+              HasSubstr("found 3 usable rows, expected at least 4"));
+  EXPECT_THAT(error_of(table, model_of({term("bias")}), {.weight_by = "x"}),
+              HasSubstr("column x: found -1 in row 1"));
+  EXPECT_THAT(error_of(table, model_of({term("bias")}), {.weight_by = "sigma"}),
+              HasSubstr("column sigma"));
+  EXPECT_THAT(error_of(table, model_of({term("bias")}), {.noise = FitOptions::Noise::kColoured}),
+              HasSubstr("column time_s"));
+  EXPECT_THAT(error_of(table, model_of({formula("root", "sqrt(x)")})),
+              HasSubstr("term root: is not a finite number in row 1"));
+  ModelTerm fixed = term("bias");
+  fixed.fixed = true;
+  EXPECT_THAT(error_of(table, model_of({fixed})), HasSubstr("bias has no coefficient"));
+  ModelTerm wrong = term("bias");
+  wrong.parameters = {{"tau", 1.0}};
+  EXPECT_THAT(error_of(table, model_of({wrong})), HasSubstr("found the parameter 'tau'"));
+}
+
+TEST(Expression, ErrorsNameTheTerm) {
+  Table table;
+  table.set_column("rate_deg_per_h", {1, 2, 3});
+  table.set_column("x", {1, 2, 3});
+  EXPECT_THAT(error_of(table, model_of({formula("mine", "2*(x")})),
+              HasSubstr("term mine: found '2*(x', expected a formula"));
+  EXPECT_THAT(error_of(table, model_of({formula("mine", "2*z")})),
+              HasSubstr("term mine: found the name 'z'"));
+  EXPECT_THAT(error_of(table, model_of({formula("mine", "x, x")})),
+              HasSubstr("term mine: found 2"));
+  EXPECT_THAT(error_of(table, model_of({formula("mine", "")})), HasSubstr("term mine"));
+  EXPECT_THAT(error_of(table, model_of({formula("mine", "2*x", {{"x", 1.0}})})),
+              HasSubstr("also a column"));
+  EXPECT_THAT(error_of(table, model_of({formula("mine", "2*x", {{"b", 1.0}})})),
+              HasSubstr("does not use"));
+}
+
+TEST(Expression, KnowsTheOperatorsThatAreDocumented) {
+  Table table;
+  table.set_column("x", {2.0});
+  ModelFile model = model_of({formula("f",
+                                      "-x^2 + 2^3^0 + exp(0) + ln(e) + sin(pi/2) + cos(0) + "
+                                      "atan(0) + sqrt(4) + abs(-1) + (x > 1 ? 10 : 20)")});
+  model.terms[0].coefficient = 1.0;
+  const auto value = predict(table, model);
+  ASSERT_TRUE(value) << value.error().message;
+  EXPECT_NEAR((*value)[0], -4 + 2 + 1 + 1 + 1 + 1 + 0 + 2 + 1 + 10, 1e-12);
+}
+
+TEST(Expression, ParameterOfOneTermIsSharedByTheOthers) {
+  Table table;
+  std::vector<double> x, y;
+  for (int i = 0; i < 40; ++i) {
+    x.push_back(0.1 * i);
+    y.push_back(2.0 * std::cos(1.7 * x.back()) - 3.0 * std::sin(1.7 * x.back()));
+  }
+  table.set_column("x", x);
+  table.set_column("rate_deg_per_h", y);
+  const auto found =
+      fit(table, model_of({formula("c", "cos(w*x)", {{"w", 1.5}}), formula("s", "sin(w*x)")}), {});
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_EQ(found->estimates.size(), 3u);
+  EXPECT_NEAR(estimate(*found, "c.w").value, 1.7, 1e-9);
+  EXPECT_NEAR(estimate(*found, "s").value, -3.0, 1e-9);
+}
+
+TEST(Fit, InnerParameterAtTheEdgeOfItsRangeIsSaid) {
+  Table table = field_sweep(1);
+  std::vector<double> rate;
+  for (std::size_t i = 0; i < table.rows(); ++i) rate.push_back(0.01 * static_cast<double>(i));
+  table.set_column("rate_deg_per_h", rate);
+  const auto found = fit(table, model_of({term("bias"), term("warm_up")}),
+                         {.noise = FitOptions::Noise::kIndependent});
+  ASSERT_TRUE(found);
+  bool said = false;
+  for (const std::string& w : found->warnings) {
+    said = said || w.find("edge of its range") != std::string::npos;
+  }
+  EXPECT_TRUE(said);
+}
+
 }  // namespace
 }  // namespace fogbench::model
