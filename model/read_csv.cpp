@@ -82,10 +82,40 @@ bool take_field(std::string_view& line, std::string& field, bool& last) {
   return true;
 }
 
+/// Reads "-12.345" from the front of a line, correctly rounded: up to 15 digits are exact in a
+/// double, and so is the power of ten, which leaves one rounding. Returns where it stopped, or null
+/// for what takes more thought (exponents, more digits, no number).
+const char* plain_number(const char* at, const char* end, double& value) {
+  static constexpr std::array<double, 16> kPowersOfTen = {
+      1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+  const bool negative = at != end && *at == '-';
+  if (negative) ++at;
+  std::uint64_t digits = 0;
+  const char* const first = at;
+  for (; at != end && *at >= '0' && *at <= '9'; ++at) {
+    digits = 10 * digits + static_cast<std::uint64_t>(*at - '0');
+  }
+  auto count = at - first;
+  std::ptrdiff_t decimals = 0;
+  if (at != end && *at == '.') {
+    const char* const point = ++at;
+    for (; at != end && *at >= '0' && *at <= '9'; ++at) {
+      digits = 10 * digits + static_cast<std::uint64_t>(*at - '0');
+    }
+    decimals = at - point;
+    count += decimals;
+  }
+  if (count == 0 || count > 15) return nullptr;
+  const double magnitude =
+      static_cast<double>(digits) / kPowersOfTen[static_cast<std::size_t>(decimals)];
+  value = negative ? -magnitude : magnitude;
+  return at;
+}
+
 /// A number, NaN for missing, or nothing when the text is neither.
 std::optional<double> to_number(std::string_view text) {
   if (text.empty()) return kMissing;
-  if (text.front() == '+') text.remove_prefix(1);
+  if (text.front() == '+' && !text.substr(1).starts_with('-')) text.remove_prefix(1);
   double value = 0.0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failure != std::errc() || end != text.data() + text.size() || std::isinf(value)) return {};
@@ -256,9 +286,12 @@ class CsvReader {
         // The common case first: a plain number, directly followed by its comma or the line's end.
         const char* const end = line.data() + line.size();
         double value = 0.0;
-        const auto [stop, failure] = std::from_chars(line.data(), end, value);
-        const bool ends = stop == end ? is_last : *stop == ',' && !is_last;
-        if (failure == std::errc() && ends && !std::isinf(value)) {
+        const char* stop = plain_number(line.data(), end, value);
+        if (stop == nullptr || (stop != end && *stop != ',')) {
+          const auto [at, failure] = std::from_chars(line.data(), end, value);
+          stop = failure == std::errc() && !std::isinf(value) ? at : nullptr;
+        }
+        if (stop != nullptr && (stop == end ? is_last : *stop == ',' && !is_last)) {
           column.values.push_back(value);
           line.remove_prefix(static_cast<std::size_t>(stop - line.data()) + (is_last ? 0 : 1));
           continue;

@@ -64,6 +64,34 @@ TEST_F(ReadCsv, ReadsNumbersTextsAndMissingValues) {
   EXPECT_EQ(table->segment().values.size(), 2u);
 }
 
+TEST_F(ReadCsv, EveryNumberIsCorrectlyRounded) {
+  const char* const numbers[] = {"0.1",
+                                 "-0",
+                                 "5.",
+                                 ".5",
+                                 "-.25",
+                                 "123456789.123456",
+                                 "0.000000000000001",
+                                 "999999999999999",
+                                 "1234567890.1234567",
+                                 "9007199254740993",
+                                 "18446744073709551617",
+                                 "1e5",
+                                 "-2.5E-3",
+                                 "4.9e-324",
+                                 "00012.500",
+                                 "0.3000000000000000444089209850062616169452667236328125"};
+  for (const char* number : numbers) {
+    const auto table = read(std::string("x,y\n") + number + "," + number + "\n");
+    ASSERT_TRUE(table) << table.error().message;
+    EXPECT_EQ(table->column("x")[0], std::strtod(number, nullptr)) << number;
+    EXPECT_EQ(table->column("y")[0], std::strtod(number, nullptr)) << number;
+  }
+  for (const char* text : {"-", ".", "-.", "1.2.3", "--1", "+-1", "1-"}) {
+    EXPECT_THAT(error(std::string("rate_deg_per_h\n") + text + "\n"), HasSubstr(text));
+  }
+}
+
 TEST_F(ReadCsv, SkipsCommentLinesBeforeTheNames) {
   const auto table = read("# source: a paper\nrate_deg_per_h\n1\n2\n");
   ASSERT_TRUE(table) << table.error().message;
