@@ -28,6 +28,8 @@ void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_fit(app, action);
   fogbench::cli::add_add(app, action);
   fogbench::cli::add_compensate(app, action);
+  fogbench::cli::add_compare(app, action);
+  fogbench::cli::add_allan(app, action);
 }
 
 int run(int argc, char** argv) {

@@ -74,15 +74,17 @@ Cells make_cells(const Table& table, const FitResult& fit) {
     if (region.rows == 0) continue;
     region.residual /= static_cast<double>(region.rows);
     region.observed /= static_cast<double>(region.rows);
+    region.offset = region.residual;
   }
   return cells;
 }
 
 std::string describe(const Region& region, std::string_view unit, bool noise_known) {
   const Range range{region.where, region.from, region.to};
-  std::string text = fmt::format("{} the model is {:.3g} {} {} the measurements",
-                                 place_in_words(region.variable, range), std::abs(region.residual),
-                                 unit, region.residual < 0.0 ? "above" : "below");
+  std::string text = fmt::format("{} the model is {:.3g} {} {} the measurements{}",
+                                 place_in_words(region.variable, range), std::abs(region.offset),
+                                 unit, region.offset < 0.0 ? "above" : "below",
+                                 region.drift_allowed ? ", slow drift allowed for" : "");
   if (noise_known) {
     text += fmt::format(" (z = {:.1f}, {})", std::abs(region.z),
                         probability_text(region.p_family_wise));
@@ -91,6 +93,14 @@ std::string describe(const Region& region, std::string_view unit, bool noise_kno
 }
 
 }  // namespace
+
+std::string place_of(const Region& region) {
+  const std::string text = place_in_words(region.variable, {region.where, region.from, region.to});
+  for (const std::string_view lead : {"At an ", "At a ", "At ", "In "}) {
+    if (text.starts_with(lead)) return text.substr(lead.size());
+  }
+  return text;
+}
 
 Result<Comparison> compare(const Table& table, const config::ModelFile& model,
                            const FitOptions& options, std::uint64_t seed) {
@@ -117,6 +127,8 @@ Result<Comparison> compare(const Table& table, const config::ModelFile& model,
       Region& region = cells.regions[static_cast<std::size_t>(g)];
       region.standard_error = error[g];
       region.z = scores.z[g];
+      region.drift_allowed = scores.offset.size() > 0;
+      if (region.drift_allowed) region.offset = scores.offset[g];
       region.p_family_wise = scores.family_wise[g];
     }
   }

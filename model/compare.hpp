@@ -27,13 +27,20 @@ struct Region {
   std::string variable;  ///< column name, or empty
   double from = 0.0, to = 0.0;
   std::size_t rows = 0;
-  double observed = 0.0;        ///< means over the region's rows
-  double residual = 0.0;        ///< observed - model
+  double observed = 0.0;  ///< means over the region's rows
+  double residual = 0.0;  ///< observed - model
+  /// What z is about: the residual, or under coloured noise the offset from the rows around it that
+  /// is left when slow drift is allowed for.
+  double offset = 0.0;
+  bool drift_allowed = false;
   double standard_error = 0.0;  ///< of that mean under the noise; 0 when it is not known
   double z = 0.0;
   double p_family_wise = 1.0;  ///< corrected for all regions looked at
   std::string says;
 };
+
+/// Where a region lies, for a table: "55 degC", "field z of 100 uT", "segment coil_z/down".
+std::string place_of(const Region& region);
 
 /// Two runs' coefficients against each other.
 struct RunChange {

@@ -85,10 +85,16 @@ void say_fit(Comparison& c, std::string_view unit, const std::string& noise_says
   std::string text = fmt::format("{} leaves an RMS residual of {:.3g} {} over {} rows.",
                                  c.as_is ? "The model, held as given," : "The fitted model",
                                  c.fit.rms, unit, c.fit.rows.size());
-  if (c.noise_known)
-    text += fmt::format(" Noise alone would leave {:.3g} {}.", c.noise_floor, unit);
+  if (std::isfinite(c.noise_floor)) {
+    text += fmt::format(" {} noise alone would leave {:.3g} {}.",
+                        c.fit.coloured ? "White" : "The stated", c.noise_floor, unit);
+  }
   c.sentences.push_back(std::move(text));
-  c.sentences.push_back(fmt::format("The noise: {}.", noise_says));
+  const bool fails = c.noise_known && c.p_adequate < kAdequate;
+  c.sentences.push_back(fmt::format("The noise: {}.{}", noise_says,
+                                    fails && c.fit.coloured && !c.as_is
+                                        ? " Part of the model's misfit may stand in these numbers."
+                                        : ""));
 }
 
 void say_regions(Comparison& c, const Table& table, const config::ModelFile& model,
@@ -101,6 +107,10 @@ void say_regions(Comparison& c, const Table& table, const config::ModelFile& mod
   if (!c.noise_known) {
     c.sentences.push_back(
         "Whether the misses are more than noise cannot be said; the largest come first:");
+  } else if (c.regions.front().z == 0.0) {
+    c.sentences.push_back(
+        "The fitted terms leave no range free to differ from the measurements on average.");
+    return;
   } else if (!fails) {
     c.sentences.push_back(
         fmt::format("No more than noise explains: the worst of {} ranges would stand out as much "
@@ -172,7 +182,7 @@ RunCoefficients magnetic_part(const RunFit& run, std::vector<std::string>& names
 }
 
 /// Coefficients other than the magnetic ones, where both runs know their uncertainty.
-void say_differences(Comparison& c, const std::vector<RunFit>& runs) {
+void say_differences(std::vector<std::string>& out, const std::vector<RunFit>& runs) {
   for (std::size_t r = 1; r < runs.size(); ++r) {
     for (std::size_t k = 0; k < runs[0].fit.estimates.size(); ++k) {
       const Estimate& a = runs[0].fit.estimates[k];
@@ -183,18 +193,20 @@ void say_differences(Comparison& c, const std::vector<RunFit>& runs) {
       const double expanded =
           std::hypot(a.coverage_factor * a.standard_error, b.coverage_factor * b.standard_error);
       if (!(std::abs(b.value - a.value) > expanded)) continue;
-      c.sentences.push_back(fmt::format(
+      out.push_back(fmt::format(
           "From run {} to run {} {} changed by {:.3g} +- {:.2g} {} (95 %), from {:.3g} to {:.3g}.",
           runs[0].run, runs[r].run, a.name, b.value - a.value, expanded, a.unit, a.value, b.value));
     }
   }
 }
 
-void say_changes(Comparison& c, const Table& table, const config::ModelFile& model,
-                 const FitOptions& options) {
-  if (table.run().values.size() < 2 || options.as_is) return;
+/// Fills `changes`; the sentences about them.
+std::vector<std::string> find_changes(Comparison& c, const Table& table,
+                                      const config::ModelFile& model, const FitOptions& options) {
+  std::vector<std::string> out;
+  if (table.run().values.size() < 2 || options.as_is) return out;
   const std::vector<RunFit> runs = fit_each_run(table, model, options);
-  if (runs.size() < 2) return;
+  if (runs.size() < 2) return out;
   std::vector<RunCoefficients> sets;
   std::vector<std::string> names, first_names;
   std::string unit;
@@ -217,12 +229,13 @@ void say_changes(Comparison& c, const Table& table, const config::ModelFile& mod
     }
     if (!noise_known && !scale_changed) {
       for (std::string& text : judge_by_scatter(sets, names, unit)) {
-        c.sentences.push_back(std::move(text));
+        out.push_back(std::move(text));
       }
     }
-    for (const RunChange& change : c.changes) c.sentences.push_back(change.says);
+    for (const RunChange& change : c.changes) out.push_back(change.says);
   }
-  say_differences(c, runs);
+  say_differences(out, runs);
+  return out;
 }
 
 }  // namespace
@@ -234,9 +247,10 @@ std::string probability_text(double p) {
 void conclude(Comparison& comparison, const Table& table, const config::ModelFile& model,
               const FitOptions& options, const std::string& noise_says) {
   const std::string_view unit = config::unit_of(model.observable);
+  std::vector<std::string> changes = find_changes(comparison, table, model, options);
   say_fit(comparison, unit, noise_says);
   say_regions(comparison, table, model, unit);
-  say_changes(comparison, table, model, options);
+  for (std::string& text : changes) comparison.sentences.push_back(std::move(text));
 }
 
 }  // namespace fogbench::model

@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kMostClusters = 16;
 constexpr std::size_t kQuantiles = 8;
 constexpr std::size_t kMostTexts = 40;
+// With fewer rows a run's mean says nothing that its coefficients do not say better.
+constexpr std::size_t kFewestPerRun = 5;
 constexpr std::size_t kMostSampled = 100000;  // values looked at to place the ranges
 // Clusters are told apart by gaps of this part of the variable's span, and no cluster may be wider
 // than that part: 13 levels of a field sweep are 1/12 apart.
@@ -145,7 +147,8 @@ std::vector<Partition> partition_rows(const Table& table, std::span<const std::s
     keep(out, by_text(table.segment(), rows, "segment", whole));
     keep(out, by_text(table.segment(), rows, "sweep", before_slash));
   }
-  if (table.run().values.size() <= kMostTexts) {
+  const std::size_t runs = table.run().values.size();
+  if (runs <= kMostTexts && rows.size() >= kFewestPerRun * runs) {
     keep(out, by_text(table.run(), rows, "run", whole));
   }
   const Signals signals(table, reference_temperature_c);

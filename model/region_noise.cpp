@@ -324,7 +324,7 @@ RegionScores RegionNoise::scores(const VectorXd& mean_residual, std::uint64_t se
     return score_regions(*shapes_, fitted_columns_, window_residual_, indicators_, estimate_, seed);
   }
   const VectorXd error = standard_errors();
-  RegionScores out{.z = VectorXd::Zero(error.size()), .family_wise = {}};
+  RegionScores out{.offset = {}, .z = VectorXd::Zero(error.size()), .family_wise = {}};
   for (Index g = 0; g < error.size(); ++g) {
     if (error[g] > 0.0) out.z[g] = mean_residual[g] / error[g];
   }

@@ -74,7 +74,7 @@ RegionScores score_regions(const NoiseShapes& shapes, const MatrixXd& x, const V
   data.rightCols(draws) = draw_noise(shapes, estimate, draws, seed);
 
   LogSum without(1, draws + 1), with(regions, draws + 1);
-  VectorXd sign = VectorXd::Ones(regions);
+  VectorXd offset = VectorXd::Zero(regions);
   double best = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     const auto whitener = shapes.whitener(k);
@@ -91,10 +91,11 @@ RegionScores score_regions(const NoiseShapes& shapes, const MatrixXd& x, const V
       u -= q * (q.transpose() * u);
       log_determinant += qr.matrixQR().diagonal().head(rank).array().abs().log().sum();
     }
+    VectorXd scale = u.colwise().norm();
     for (Index g = 0; g < regions; ++g) {
-      const double left = u.col(g).norm();
-      u.col(g) *= left > kLeastLeft * whole[g] ? 1.0 / left : 0.0;
+      scale[g] = scale[g] > kLeastLeft * whole[g] ? 1.0 / scale[g] : 0.0;
     }
+    u *= scale.asDiagonal();
     const ArrayXXd score = (u.transpose() * e).array();
     const Eigen::Array<double, 1, Eigen::Dynamic> squares = e.colwise().squaredNorm().array();
     const ResidualEvidence evidence(static_cast<double>(n - rank), shapes.anchor());
@@ -105,11 +106,15 @@ RegionScores score_regions(const NoiseShapes& shapes, const MatrixXd& x, const V
     const double weight = log_evidence(squares[0]);
     if (weight > best) {
       best = weight;
-      sign = score.col(0).unaryExpr([](double s) { return s < 0.0 ? -1.0 : 1.0; });
+      offset = score.col(0).matrix().cwiseProduct(scale);
     }
   }
   const ArrayXXd z = (2.0 * (with.value() - without.value().replicate(regions, 1))).max(0.0).sqrt();
-  RegionScores out{.z = sign.cwiseProduct(z.col(0).matrix()), .family_wise = VectorXd(regions)};
+  RegionScores out;
+  out.offset = offset;
+  out.z = offset.unaryExpr([](double d) { return d < 0.0 ? -1.0 : 1.0; })
+              .cwiseProduct(z.col(0).matrix());
+  out.family_wise = VectorXd(regions);
   const ArrayXd largest = z.rightCols(draws).colwise().maxCoeff().transpose();
   for (Index g = 0; g < regions; ++g) {
     const auto at_least = static_cast<double>((largest >= z(g, 0)).count());

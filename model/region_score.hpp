@@ -18,6 +18,9 @@
 namespace fogbench::model {
 
 struct RegionScores {
+  /// Least-squares offset of each region under the most credible noise; empty when z is not from
+  /// offsets but from mean residuals.
+  Eigen::VectorXd offset;
   Eigen::VectorXd z;  ///< sqrt(Lambda), with the sign of the offset; 0 where nothing is left of it
   /// Per region, the chance that noise makes the largest |z| of all at least that large.
   Eigen::VectorXd family_wise;

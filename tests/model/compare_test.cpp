@@ -129,6 +129,7 @@ TEST(Compare, SaysThatDevice2ShrankAsAWhole) {
   EXPECT_TRUE(result->changes[0].scale_changed);
   EXPECT_NEAR(result->changes[0].common_scale, 0.64, 0.005);
   EXPECT_THAT(result->sentences, Contains(HasSubstr("shrank together")));
+  EXPECT_THAT(result->sentences, Contains(HasSubstr("leave no range free to differ")));
 }
 
 /// A sweep of one axis in loops, with the given noise; `gap` is added on the way down.
@@ -217,6 +218,14 @@ TEST(Compare, PassesOnWhatTheFitRefuses) {
   const auto result = compare(published_thermal(), model_of({term("no_such_effect")}), {});
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, ErrorCode::kBadInput);
+}
+
+TEST(Compare, WritesNoNumberThatIsNone) {
+  for (bool as_is : {false, true}) {
+    const auto result = compare(published_thermal(), published_thermal_model(), {.as_is = as_is});
+    ASSERT_TRUE(result);
+    EXPECT_THAT(result->sentences, Not(Contains(HasSubstr("nan"))));
+  }
 }
 
 TEST(Tangent, IsTheRegressorOrTheDerivativeByTheInnerParameter) {

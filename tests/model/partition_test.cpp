@@ -44,20 +44,35 @@ TEST(RangesOf, DoNotExistForOneValue) {
 }
 
 TEST(PartitionRows, CutsBySegmentSweepRunAndVariable) {
+  constexpr std::size_t kRows = 12;
+  std::vector<double> rate(kRows, 1.0), temperature;
+  TextColumn run{.values = {"1", "2"}, .index = {}};
+  TextColumn segment{.values = {"coil_z/up", "coil_z/down", "coil_x/up"}, .index = {}};
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    rows.push_back(i);
+    run.index.push_back(i < 6 ? 0 : 1);
+    segment.index.push_back(static_cast<std::uint32_t>(i / 4));
+    temperature.push_back(i == 11 ? std::nan("") : i < 8 ? 31.0 : 55.0);
+  }
   Table table;
-  table.set_column("rate_deg_per_h", {1, 2, 3, 4});
-  table.set_column("temperature_c", {31, 31, 55, std::nan("")});
-  table.set_run({.values = {"1", "2"}, .index = {0, 0, 1, 1}});
-  table.set_segment({.values = {"coil_z/up", "coil_z/down", "coil_x/up"}, .index = {0, 1, 2, 2}});
-  const std::vector<std::size_t> rows{0, 1, 2, 3};
+  table.set_column("rate_deg_per_h", rate);
+  table.set_column("temperature_c", temperature);
+  table.set_run(run);
+  table.set_segment(segment);
   const auto partitions = partition_rows(table, rows, 21.0);
   ASSERT_EQ(partitions.size(), 4u);
   EXPECT_EQ(partitions[0].ranges[1].where, "segment coil_z/down");
   EXPECT_EQ(partitions[1].ranges[0].where, "sweep coil_z");
-  EXPECT_THAT(partitions[1].index, testing::ElementsAre(0, 0, 1, 1));
+  EXPECT_THAT(partitions[1].index, testing::ElementsAre(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1));
   EXPECT_EQ(partitions[2].ranges[1].where, "run 2");
   EXPECT_EQ(partitions[3].variable, "temperature_c");
-  EXPECT_THAT(partitions[3].index, testing::ElementsAre(0, 0, 1, -1));
+  EXPECT_THAT(partitions[3].index, testing::ElementsAre(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, -1));
+
+  rows.resize(9);  // too few rows a run to speak of a run's mean
+  for (const Partition& partition : partition_rows(table, rows, 21.0)) {
+    EXPECT_THAT(partition.ranges[0].where, testing::Not(testing::HasSubstr("run")));
+  }
 }
 
 TEST(PlaceInWords, HasUnitsAndOneNumberForASetPoint) {

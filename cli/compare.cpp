@@ -1,0 +1,224 @@
+// fogbench compare: a model against its measurements: the fit, where it fails
+// and by how much, and what changed between runs.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "cli/load_table.hpp"
+#include "cli/output.hpp"
+#include "config/output_file.hpp"
+#include "config/paths.hpp"
+#include "config/units.hpp"
+#include "model/compare.hpp"
+#include "model/report.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+struct CompareOptions {
+  DataOptions data;
+  std::string model;
+  std::string weight_by;
+  std::string report;
+  model::FitOptions::Noise noise = model::FitOptions::Noise::kAuto;
+  bool as_is = false;
+  bool check = false;
+  bool json = false;
+};
+
+/// What to type next.
+std::string next_step(const model::Comparison& c, const CompareOptions& options) {
+  const std::string& data = options.data.data.front();
+  if (c.as_is) {
+    return fmt::format("fogbench compare {} --model {}   (fits the coefficients first)", data,
+                       options.model);
+  }
+  if (c.p_adequate < model::kAdequate) {
+    return fmt::format(
+        "fogbench add EFFECT --model {} -o wider.json && "
+        "fogbench compare {} --model wider.json   "
+        "(fogbench effects lists what may be missing)",
+        options.model, data);
+  }
+  return fmt::format("fogbench fit {} --model {} -o fitted.json", data, options.model);
+}
+
+/// The worst ranges; those that the fit leaves no freedom are not worth a line.
+void print_ranges(const model::Comparison& c, std::string_view unit) {
+  const std::string in(unit);
+  std::vector<TextTable::Column> columns{{"range", "", TextTable::Align::kLeft},
+                                         {"rows", ""},
+                                         {"measured", in},
+                                         {"model", in},
+                                         {"residual", in}};
+  const bool offsets = !c.regions.empty() && c.regions.front().drift_allowed;
+  if (offsets) columns.push_back({"drift apart", in});
+  if (c.noise_known) columns.insert(columns.end(), {{"z", ""}, {"p of all", ""}});
+  TextTable table(columns);
+  constexpr std::size_t kMostRanges = 12;
+  std::size_t shown = 0, left = 0;
+  for (const model::Region& r : c.regions) {
+    if (c.noise_known && r.z == 0.0) continue;
+    if (shown == kMostRanges) {
+      ++left;
+      continue;
+    }
+    ++shown;
+    std::vector<std::string> cells{
+        model::place_of(r), std::to_string(r.rows), fmt::format("{:.4g}", r.observed),
+        fmt::format("{:.4g}", r.observed - r.residual), fmt::format("{:.3g}", r.residual)};
+    if (offsets) cells.push_back(fmt::format("{:.3g}", r.offset));
+    if (c.noise_known) {
+      cells.push_back(fmt::format("{:.1f}", r.z));
+      cells.push_back(r.p_family_wise < 1e-4 ? "< 0.0001" : fmt::format("{:.2g}", r.p_family_wise));
+    }
+    table.add_row(std::move(cells));
+  }
+  if (table.empty()) return;
+  fmt::print("{}", table.text());
+  if (left > 0) fmt::print("and {} more ranges, all less far off\n", left);
+  fmt::print("\n");
+}
+
+void print_text(const model::Comparison& c, const CompareOptions& options, std::string_view unit) {
+  using Align = TextTable::Align;
+  TextTable table({{"term", "", Align::kLeft},
+                   {"estimate", ""},
+                   {"+-", "95.45 %"},
+                   {"unit", "", Align::kLeft}});
+  for (const model::Estimate& e : c.fit.estimates) {
+    const double expanded = e.coverage_factor * e.standard_error;
+    table.add_row({e.name, fmt::format("{:.6g}", e.value),
+                   e.held                 ? "held"
+                   : std::isnan(expanded) ? "-"
+                                          : fmt::format("{:.2g}", expanded),
+                   e.unit});
+  }
+  fmt::print("{}\n", table.text());
+  for (const std::string& warning : c.fit.warnings) fmt::print("warning: {}\n", warning);
+  print_ranges(c, unit);
+  for (const std::string& sentence : c.sentences) fmt::print("{}\n", sentence);
+  if (!options.report.empty()) fmt::print("\nReport: {}\n", options.report);
+  fmt::print("\nNext: {}\n", next_step(c, options));
+}
+
+nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options) {
+  nlohmann::json estimates = nlohmann::json::array(), regions = nlohmann::json::array(),
+                 changes = nlohmann::json::array();
+  for (const model::Estimate& e : c.fit.estimates) {
+    estimates.push_back({{"name", e.name},
+                         {"unit", e.unit},
+                         {"value", e.value},
+                         {"standard_error", e.standard_error},
+                         {"expanded_uncertainty", e.coverage_factor * e.standard_error},
+                         {"held", e.held}});
+  }
+  for (const model::Region& r : c.regions) {
+    regions.push_back({{"where", r.where},
+                       {"variable", r.variable},
+                       {"range", {r.from, r.to}},
+                       {"rows", r.rows},
+                       {"observed_deg_per_h", r.observed},
+                       {"model_deg_per_h", r.observed - r.residual},
+                       {"residual_deg_per_h", r.residual},
+                       {"offset_deg_per_h", r.offset},
+                       {"standard_error_deg_per_h", r.standard_error},
+                       {"z", r.z},
+                       {"p_family_wise", r.p_family_wise},
+                       {"says", r.says}});
+  }
+  for (const model::RunChange& change : c.changes) {
+    changes.push_back({{"run_a", change.run_a},
+                       {"run_b", change.run_b},
+                       {"common_scale", change.common_scale},
+                       {"scale_standard_error", change.scale_standard_error},
+                       {"angle_deg", change.angle_deg},
+                       {"p_repeat", change.p_repeat},
+                       {"scale_changed", change.scale_changed},
+                       {"says", change.says}});
+  }
+  const config::NoiseCoefficients& noise = c.fit.noise.noise;
+  return {{"adequate", c.p_adequate >= model::kAdequate},
+          {"p_adequate", c.p_adequate},
+          {"noise_known", c.noise_known},
+          {"as_is", c.as_is},
+          {"fit",
+           {{"rms_deg_per_h", c.fit.rms},
+            {"noise_floor_deg_per_h", c.noise_floor},
+            {"rows", c.fit.rows.size()}}},
+          {"noise",
+           {{"coloured", c.fit.coloured},
+            {"says", c.fit.noise.says},
+            {"N_deg_per_sqrt_h", noise.angle_random_walk_deg_per_sqrt_h},
+            {"B_deg_per_h", noise.bias_instability_deg_per_h},
+            {"K_deg_per_h_per_sqrt_h", noise.rate_random_walk_deg_per_h_per_sqrt_h}}},
+          {"estimates", estimates},
+          {"regions", regions},
+          {"changes", changes},
+          {"warnings", c.fit.warnings},
+          {"sentences", c.sentences},
+          {"next", next_step(c, options)}};
+}
+
+Result<ExitStatus> run_compare(const CompareOptions& options) {
+  const auto file = config::find_config("models", options.model);
+  if (!file) return file.error();
+  const auto model = config::load_model(*file);
+  if (!model) return model.error();
+  const auto table = load_table(options.data);
+  if (!table) return table.error();
+  const auto result = model::compare(
+      *table, *model,
+      {.noise = options.noise, .weight_by = options.weight_by, .as_is = options.as_is});
+  if (!result) return result.error();
+  if (!options.report.empty()) {
+    const std::string page = model::report_html(*result, *table, *model, options.data.data.front());
+    if (Status written = config::write_file(options.report, page); !written) {
+      return written.error();
+    }
+  }
+  if (options.json) {
+    print_json(to_json(*result, options));
+  } else {
+    print_text(*result, options, config::unit_of(model->observable));
+  }
+  const bool no = options.check && result->p_adequate < model::kAdequate;
+  return no ? ExitStatus::kNo : ExitStatus::kDone;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Action& action) {
+  using Noise = model::FitOptions::Noise;
+  add_command<CompareOptions>(
+      app, action, "compare", "See where a model and its measurements differ",
+      "  fogbench compare config/data/paper-thermal.csv --model paper-thermal "
+      "--as-is\n"
+      "  fogbench compare 7 --model general --report page.html\n",
+      [](CLI::App& command, CompareOptions& options) {
+        add_data_options(command, options.data);
+        command.add_option("--model", options.model, "Model file, or a ready model's name")
+            ->required();
+        command.add_flag("--as-is", options.as_is,
+                         "Hold the coefficients as given instead of fitting them");
+        command.add_option("--weight-by", options.weight_by, "Column of standard deviations");
+        command
+            .add_option("--noise", options.noise,
+                        "auto, independent or coloured (needs time_s and duration_s)")
+            ->transform(CLI::CheckedTransformer(
+                std::map<std::string, Noise>{{"auto", Noise::kAuto},
+                                             {"independent", Noise::kIndependent},
+                                             {"coloured", Noise::kColoured}}));
+        command.add_option("--report", options.report, "Write one self-contained HTML page");
+        command.add_flag("--check", options.check, "Exit with 1 when the model is inadequate");
+        command.add_flag("--json", options.json, "One JSON document");
+      },
+      run_compare);
+}
+
+}  // namespace fogbench::cli
