@@ -26,19 +26,20 @@ constexpr double kGap = 1.0 / 40.0;
 struct Variable {
   const char* column;
   const char* words;  // before the range
+  double least_span;  // below it the variable was not varied: what is left is its sensor's noise
 };
 
 constexpr Variable kVariables[] = {
-    {"temperature_c", "At"},
-    {"temperature_rate_c_per_h", "At a temperature rate of"},
-    {"temperature_gradient_c", "At a temperature gradient of"},
-    {"ambient_c", "At an ambient temperature of"},
-    {"heater_w", "At a heater power of"},
-    {"field_x_ut", "At a field x of"},
-    {"field_y_ut", "At a field y of"},
-    {"field_z_ut", "At a field z of"},
-    {"azimuth_deg", "At an azimuth of"},
-    {"time_s", "At a time of"},
+    {"temperature_c", "At", 0.5},
+    {"temperature_rate_c_per_h", "At a temperature rate of", 1.0},
+    {"temperature_gradient_c", "At a temperature gradient of", 0.1},
+    {"ambient_c", "At an ambient temperature of", 0.5},
+    {"heater_w", "At a heater power of", 0.1},
+    {"field_x_ut", "At a field x of", 5.0},
+    {"field_y_ut", "At a field y of", 5.0},
+    {"field_z_ut", "At a field z of", 5.0},
+    {"azimuth_deg", "At an azimuth of", 1.0},
+    {"time_s", "At a time of", 60.0},
 };
 
 /// The range that holds the value: ranges are in order and do not overlap; values in a gap between
@@ -156,6 +157,8 @@ std::vector<Partition> partition_rows(const Table& table, std::span<const std::s
     const std::vector<double> values = values_of(table, signals, variable.column, rows);
     Partition partition{.variable = variable.column, .ranges = ranges_of(values), .index = {}};
     if (partition.ranges.empty()) continue;
+    const double span = partition.ranges.back().to - partition.ranges.front().from;
+    if (span < variable.least_span) continue;
     partition.index.reserve(values.size());
     for (double value : values) partition.index.push_back(range_of(partition.ranges, value));
     keep(out, std::move(partition));

@@ -58,6 +58,10 @@ TEST(PartitionRows, CutsBySegmentSweepRunAndVariable) {
   Table table;
   table.set_column("rate_deg_per_h", rate);
   table.set_column("temperature_c", temperature);
+  std::vector<double> held_field;
+  for (std::size_t i = 0; i < kRows; ++i)
+    held_field.push_back(-50.0 + 0.01 * static_cast<double>(i));
+  table.set_column("field_x_ut", held_field);  // its sensor's noise is not a variable
   table.set_run(run);
   table.set_segment(segment);
   const auto partitions = partition_rows(table, rows, 21.0);
