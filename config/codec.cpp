@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "config/json_file.hpp"
+#include "config/nearest_name.hpp"
 
 namespace fogbench::config {
 

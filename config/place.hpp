@@ -51,8 +51,4 @@ class Place {
   std::size_t index_ = 0;
 };
 
-/// The known name that is most like `name`, empty when none is near (two edits, or a third of its
-/// letters).
-std::string_view nearest_name(std::string_view name, const std::vector<std::string_view>& known);
-
 }  // namespace fogbench::config

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/nearest_name.hpp"
 #include "model/effects/list.hpp"
 
 namespace fogbench::model {
@@ -45,20 +46,6 @@ std::vector<const Effect*> make_catalogue() {
   return all;
 }
 
-/// Levenshtein's distance: insertions, deletions and replacements.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
 
 std::span<const Effect* const> catalogue() {
@@ -77,7 +64,7 @@ std::string unknown_effect(std::string_view id) {
   const std::string_view asked = id.substr(0, 80);
   std::vector<std::pair<std::size_t, std::string_view>> nearest;
   for (const Effect* effect : catalogue()) {
-    nearest.emplace_back(distance(asked, effect->info().id), effect->info().id);
+    nearest.emplace_back(config::edits_between(asked, effect->info().id), effect->info().id);
   }
   std::stable_sort(nearest.begin(), nearest.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -56,7 +56,7 @@ class Effect {
 std::span<const Effect* const> catalogue();
 /// Null when there is no such effect.
 const Effect* find_effect(std::string_view id);
-/// "unknown effect 'x', did you mean 'y', 'z'?" with the nearest names of the catalogue.
+/// "unknown effect 'x', the nearest are u, v and w", of the catalogue.
 std::string unknown_effect(std::string_view id);
 
 }  // namespace fogbench::model

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "config/place.hpp"
+#include "config/nearest_name.hpp"
 
 namespace fogbench::simulator {
 namespace {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "config/bench.hpp"
-#include "config/place.hpp"
 #include "config/scenario.hpp"
 #include "tests/config/changed_file.hpp"
 
@@ -74,14 +73,6 @@ TEST(Reading, KeyForEditorsIsAllowedAtTheTopOnly) {
 TEST(Reading, PointerIsEscapedAsTheStandardSays) {
   EXPECT_THAT(bench_message(R"([{"op": "add", "path": "/a~1b~0c", "value": 1}])"),
               StartsWith("changed.json: /a~1b~0c: unknown key"));
-}
-
-TEST(NearestName, IsWithinAThirdOfTheLetters) {
-  const std::vector<std::string_view> known = {"temperature_linear", "bias", "target_c"};
-  EXPECT_EQ(nearest_name("temprature_liner", known), "temperature_linear");
-  EXPECT_EQ(nearest_name("target", known), "target_c");
-  EXPECT_EQ(nearest_name("frequency", known), "");
-  EXPECT_EQ(nearest_name("", known), "");
 }
 
 }  // namespace
