@@ -29,7 +29,8 @@ std::optional<DeviceFile> read_named_device(const Place& at) {
   const std::filesystem::path file = (at.file().parent_path() / name).lexically_normal();
   auto device = load_device(file);
   if (!device) {
-    const bool inside_bench = !std::filesystem::is_regular_file(file);
+    std::error_code ignored;
+    const bool inside_bench = !std::filesystem::is_regular_file(file, ignored);
     inside_bench ? at.fail(device.error().message) : at.fail(device.error());
     return std::nullopt;
   }

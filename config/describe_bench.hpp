@@ -141,7 +141,8 @@ void describe(Visitor& v, ThermalPlant& t) {
   v.optional("normal_maximum_w", t.normal_maximum, "Power of the normal heater.", above(0));
   v.optional("boost_drop_out_c", t.boost_drop_out,
              "The boost heaters switch off this far below the target.", at_least(0));
-  v.optional("dead_time_s", t.dead_time, "From a change of power to the carrier.", at_least(0));
+  v.optional("dead_time_s", t.dead_time, "From a change of power to the carrier.",
+             between(0, 3600));
   v.optional("pid_gain_w_per_k", t.pid_gain_w_per_k, "Gain of the controller.", above(0));
   v.optional("pid_integral_s", t.pid_integral, "Its integral time.", above(0));
   v.optional("pid_derivative_s", t.pid_derivative, "Its derivative time.", at_least(0));
@@ -162,7 +163,7 @@ void describe(Visitor& v, MagneticPlant& m) {
   v.optional("ambient_diurnal_ut", m.ambient_diurnal, "Amplitude of its daily change.",
              at_least(0));
   v.optional("ambient_steps_per_h", m.ambient_steps_per_h,
-             "Mean number an hour of its steps by lifts and cars.", at_least(0));
+             "Mean number an hour of its steps by lifts and cars.", between(0, 3600));
   v.optional("ambient_step_ut", m.ambient_step, "Size of these steps.", at_least(0));
   v.optional("coil_ut_per_a", m.coil_ut_per_a, "True field per ampere: horizontal, vertical pair.",
              above(0));
@@ -184,7 +185,7 @@ void describe(Visitor& v, SimulationConfig& s) {
              "Standard deviation of a position.", at_least(0));
   v.optional("earth_rate_on_axis_deg_per_h", s.earth_rate_on_axis,
              "Earth's rate along the sensitive axis.");
-  v.optional("step_s", s.step, "Of the integration.", between(0.001, 10));
+  v.optional("step_s", s.step, "Of the integration.", between(0.001, 1));
 }
 
 template <class Visitor>

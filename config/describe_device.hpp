@@ -140,7 +140,8 @@ void describe(Visitor& v, HidDevice& d) {
   MagnetometerCalibration calibration{d.calibration_offset_ut, d.calibration_matrix};
   v.optional("calibration", calibration,
              "The certificate's correction; a bench's own takes its place.");
-  v.optional("report_period_s", d.report_period, "Time from one report to the next.", above(0));
+  v.optional("report_period_s", d.report_period, "Time from one report to the next.",
+             between(0.0001, 60));
   v.optional("max_age_s", d.max_age, "An older reading is stale.", above(0));
 }
 

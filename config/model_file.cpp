@@ -7,19 +7,17 @@ namespace fogbench::config {
 bool Codec<Covariance>::read(const Place& at, Covariance& out, const Rule& /*rule*/) {
   if (!at.value().is_array()) return at.wrong("a list of rows");
   const std::size_t size = at.value().size();
-  out.rows.assign(size, std::vector<double>(size));
+  out.rows.clear();
   for (std::size_t i = 0; i < size; ++i) {
     const Place row = at / i;
     if (!row.value().is_array() || row.value().size() != size) {
       return row.wrong(fmt::format("a list of {}, as many as there are rows", size));
     }
+    std::vector<double>& values =
+        out.rows.emplace_back(size, std::numeric_limits<double>::quiet_NaN());
     for (std::size_t j = 0; j < size; ++j) {
       const Place entry = row / j;
-      if (entry.value().is_null()) {
-        out.rows[i][j] = std::numeric_limits<double>::quiet_NaN();
-      } else if (!read_number(entry, out.rows[i][j], {})) {
-        return false;
-      }
+      if (!entry.value().is_null() && !read_number(entry, values[j], {})) return false;
     }
   }
   return true;

@@ -22,7 +22,9 @@ Result<fs::path> config_directory() {
     const fs::path folder = executable.parent_path();
     for (const fs::path& candidate :
          {folder / "../../config", folder / "../share/fogbench/config"}) {
-      if (fs::is_directory(candidate / "benches", error)) return fs::weakly_canonical(candidate);
+      if (!fs::is_directory(candidate / "benches", error)) continue;
+      const fs::path plain = fs::weakly_canonical(candidate, error);
+      return error ? candidate : plain;
     }
   }
   return Error{ErrorCode::kBadInput,
@@ -40,8 +42,9 @@ Result<fs::path> find_config(const std::string& kind, const std::string& name) {
   if (fs::is_regular_file(candidate, error)) return candidate;
 
   std::vector<std::string> known;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".json") known.push_back(entry.path().stem().string());
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".json") known.push_back(entry->path().stem().string());
   }
   std::sort(known.begin(), known.end());
   return Error{ErrorCode::kBadInput, fmt::format("{}: no such file, and none of the ready {} ({})",

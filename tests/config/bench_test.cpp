@@ -62,9 +62,25 @@ INSTANTIATE_TEST_SUITE_P(
                 "/limits/temperature_minimum_c: found 60, expected less than"},
         Mistake{R"([{"op": "replace", "path": "/limits/temperature_maximum_c", "value": 71}])",
                 "expected at most the thermostat's target_maximum_c 70"},
+        Mistake{R"([{"op": "add", "path": "/simulation/thermal/dead_time_s", "value": 1e300}])",
+                "/simulation/thermal/dead_time_s: found 1e+300, expected a number from 0 to 3600"},
+        Mistake{R"([{"op": "add", "path": "/simulation/magnetic/ambient_steps_per_h",
+                     "value": 1e300}])",
+                "/simulation/magnetic/ambient_steps_per_h: found 1e+300, expected a number from 0"},
+        Mistake{R"([{"op": "add", "path": "/simulation/step_s", "value": 2}])",
+                "/simulation/step_s: found 2, expected a number from 0.001 to 1"},
         Mistake{R"([{"op": "replace", "path": "/simulation/magnetic/sensor_matrix",
                      "value": [[1, 0, 0], [1, 0, 0], [0, 0, 1]]}])",
                 "/simulation/magnetic/sensor_matrix: cannot be inverted"}));
+
+TEST(LoadBench, NameOfADeviceThatNoFileCanHaveIsNamed) {
+  ChangedFile file;
+  const std::string name(5000, 'x');  // longer than the system's longest
+  const auto bench = load_bench(
+      file.patch("benches/simulated.json",
+                 R"([{"op": "replace", "path": "/gyro/device", "value": ")" + name + R"("}])"));
+  EXPECT_THAT(message_of(bench), HasSubstr("/gyro/device: "));
+}
 
 TEST(LoadBench, ErrorInADeviceFileNamesThatFile) {
   support::TemporaryFolder folder;

@@ -139,6 +139,11 @@ TEST(ModelFile, CovarianceIsSquareAndNamed) {
               HasSubstr("/fit/covariance/0: found a list of 2, expected a list of 1"));
   EXPECT_THAT(with(R"({"parameter_names": ["a", "b"], "covariance": [[1]]})"),
               HasSubstr("/fit/covariance: found a list of 1, expected 2 rows"));
+  // A square of as many columns would not fit into any memory.
+  std::string rows = "[]";
+  for (int i = 1; i < 200000; ++i) rows += ",[]";
+  EXPECT_THAT(with(R"({"parameter_names": ["a"], "covariance": [)" + rows + "]}"),
+              HasSubstr("/fit/covariance/0: found an empty list, expected a list of 200000"));
   EXPECT_THAT(with(R"({"parameter_names": ["a"], "covariance": [["1"]]})"),
               HasSubstr("/fit/covariance/0/0: found \"1\", expected a number"));
 }
