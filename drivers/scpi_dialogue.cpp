@@ -9,11 +9,13 @@
 #include <cmath>
 #include <optional>
 
+#include "config/json_file.hpp"
 #include "drivers/named_error.hpp"
 
 namespace fogbench::drivers {
 namespace {
 
+using config::one_line;
 using namespace std::chrono_literals;
 
 constexpr Clock::Duration kAnswerTimeout = 1s;
@@ -39,15 +41,6 @@ std::optional<double> parse_number(std::string_view text) {
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-/// An instrument's words on one line, without control characters and of bearable length.
-std::string printable(std::string_view text) {
-  constexpr std::size_t kMost = 80;
-  std::string result(text.substr(0, kMost));
-  std::replace_if(
-      result.begin(), result.end(), [](unsigned char c) { return c < 0x20 || c > 0x7e; }, '?');
-  return result;
 }
 
 }  // namespace
@@ -84,9 +77,9 @@ Result<ScpiDialogue> ScpiDialogue::open(std::string name, const config::ScpiDevi
   if (!identity) return identity.error();
   if (identity->find(device.identity) == std::string::npos) {
     return dialogue.error(ErrorCode::kDevice, fmt::format("says that it is {}, expected {}",
-                                                          printable(*identity), device.identity));
+                                                          one_line(*identity), device.identity));
   }
-  dialogue.identity_ = printable(*identity);
+  dialogue.identity_ = one_line(*identity);
   if (const auto old = dialogue.drain_errors(); !old) return old.error();
   for (const std::string& text : device.initialise) {
     if (const Status done = dialogue.command(text); !done) return done.error();
@@ -117,7 +110,7 @@ Result<double> ScpiDialogue::query_number(const std::string& question) {
   const auto value = parse_number(*answer);
   if (!value || !(std::abs(*value) < kInfinity)) {
     return error(ErrorCode::kProtocol,
-                 fmt::format("{} answers \"{}\", expected a number", question, printable(*answer)));
+                 fmt::format("{} answers \"{}\", expected a number", question, one_line(*answer)));
   }
   return *value;
 }
@@ -152,14 +145,14 @@ Result<std::string> ScpiDialogue::drain_errors() {
     if (!code) {
       return error(ErrorCode::kProtocol,
                    fmt::format("{} answers \"{}\", expected a number and text", error_query_,
-                               printable(*entry)));
+                               one_line(*entry)));
     }
     if (*code == 0) return all;
-    all += (all.empty() ? "" : "; ") + printable(*entry);
+    all += (all.empty() ? "" : "; ") + one_line(*entry);
   }
-  return error(ErrorCode::kProtocol,
-               fmt::format("its error queue does not end after {} entries: {}", kMostErrors,
-                           printable(all)));
+  return error(
+      ErrorCode::kProtocol,
+      fmt::format("its error queue does not end after {} entries: {}", kMostErrors, one_line(all)));
 }
 
 }  // namespace fogbench::drivers
