@@ -83,6 +83,8 @@ class Expander {
     where_ = location(*place.procedure, step.pointer);
     place_ = &place;
     failure_.reset();
+    // Steps that leave nothing in the plan are counted too, or loops of them would never end.
+    if (++expanded_ > kMaximumSteps) return too_many();
     const auto status =
         std::visit([&](const auto& action) { return add(action, path); }, step.action);
     if (failure_) return *failure_;
@@ -142,12 +144,14 @@ class Expander {
     return bad(fmt::format("{}: {} is one number, expected a list", where_, reference));
   }
 
+  Error too_many() const {
+    return bad(
+        fmt::format("{}: the procedure expands to more than {} steps", where_, kMaximumSteps));
+  }
+
   template <class Action>
   Status append(Action action, const std::string& path, int block) {
-    if (steps_.size() >= kMaximumSteps) {
-      return bad(
-          fmt::format("{}: the procedure expands to more than {} steps", where_, kMaximumSteps));
-    }
+    if (steps_.size() >= kMaximumSteps) return too_many();
     PlannedStep step;
     step.action = std::move(action);
     step.path = path;
@@ -276,6 +280,7 @@ class Expander {
 
   const ProcedureLoader& loader_;
   std::vector<PlannedStep> steps_;
+  std::size_t expanded_ = 0;
   int blocks_ = 0;
   // Of the step being expanded.
   std::string where_;

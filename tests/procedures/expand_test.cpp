@@ -201,5 +201,15 @@ TEST(Expand, RefusesALoopGoneWrong) {
               HasSubstr("more than 100000 steps"));
 }
 
+TEST(Expand, LoopsThatLeaveNothingInThePlanEndToo) {
+  const std::vector<double> many(1000, 0.0);
+  const auto loop = [&](const char* variable, std::vector<config::Step> steps) {
+    return step(config::ForEach{variable, many, std::move(steps)});
+  };
+  const auto nothing = step(config::Wait{0.0, 0.0, "", 60.0});
+  EXPECT_THAT(error_of(procedure("p", {loop("a", {loop("b", {loop("c", {nothing})})})})),
+              HasSubstr("expands to more than 100000 steps"));
+}
+
 }  // namespace
 }  // namespace fogbench::procedures
