@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <exception>
+#include <system_error>
 
 #include "cli/command.hpp"
 #include "cli/output.hpp"
@@ -32,6 +34,11 @@ void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_allan(app, action);
 }
 
+int cannot_print() {
+  fogbench::cli::print_error("the results could not be written to standard output");
+  return static_cast<int>(fogbench::ExitStatus::kFailed);
+}
+
 int run(int argc, char** argv) {
   using fogbench::ExitStatus;
   CLI::App app{kDescription, "fogbench"};
@@ -58,15 +65,20 @@ int run(int argc, char** argv) {
     fogbench::cli::print_error(status.error().message);
     return static_cast<int>(fogbench::config::exit_status(status.error().code));
   }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    fogbench::cli::print_error("the results could not be written to standard output");
-    return static_cast<int>(ExitStatus::kFailed);
-  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return cannot_print();
   return static_cast<int>(*status);
 }
 
 }  // namespace
 
+// Nothing of ours throws; what a library may still throw ends as one line.
 int main(int argc, char** argv) {
-  return run(argc, argv);
+  try {
+    return run(argc, argv);
+  } catch (const std::system_error&) {  // fmt::print, when the disk is full
+    return cannot_print();
+  } catch (const std::exception& error) {  // memory, above all
+    fogbench::cli::print_error(error.what());
+    return static_cast<int>(fogbench::ExitStatus::kFailed);
+  }
 }

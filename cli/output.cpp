@@ -76,7 +76,8 @@ void print_error(const std::string& message) {
   std::string line = message;
   std::replace_if(
       line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  fmt::print(stderr, "fogbench: {}\n", line);
+  // fmt::print would throw when standard error is closed or full.
+  std::fputs(fmt::format("fogbench: {}\n", line).c_str(), stderr);
 }
 
 void print_note(const std::string& message) {

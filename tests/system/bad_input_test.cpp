@@ -1,5 +1,8 @@
 // Whatever is given to the real program: one line, the right exit status, nothing written.
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "tests/system/fogbench.hpp"
 
 namespace fogbench::system_tests {
@@ -89,6 +92,15 @@ TEST_F(FogbenchTest, AnUnknownRunAndAnUnwritableExportAreOneLineAndLeaveNothing)
       "no/such");
   expect_refused(fogbench({"export", "1", "--store", store(), "-o", "/dev/full"}), 3, "No space");
   EXPECT_EQ(folder_.entries(), 1U);
+}
+
+TEST_F(FogbenchTest, ResultsThatCannotBePrintedAreOneLine) {
+  const Process::Setup full{{}, [] { dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO); }};
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"effects", "bias"},
+                                                    {"effects", "--json"},
+                                                    {"plan", "acceptance"}}) {
+    expect_refused(fogbench(arguments, full), 4, "could not be written to standard output");
+  }
 }
 
 }  // namespace
