@@ -46,6 +46,11 @@ Result<std::vector<fs::path>> files_of_bench(const fs::path& file) {
   return files;
 }
 
+/// The name of a file may be any bytes; JSON text may not.
+std::string text_of(const nlohmann::ordered_json& record) {
+  return record.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 nlohmann::ordered_json to_json(const Parameters& parameters) {
   nlohmann::ordered_json values = nlohmann::ordered_json::object();
   for (const auto& [name, value] : parameters) {
@@ -72,7 +77,7 @@ Result<Setup> load_setup(const SetupOptions& options) {
   if (!bench_texts) return bench_texts.error();
   auto scenario_text = config::read_text_file(*scenario_file);
   if (!scenario_text) return scenario_text.error();
-  return Setup{std::move(*bench), bench_texts->dump(), std::move(*scenario),
+  return Setup{std::move(*bench), text_of(*bench_texts), std::move(*scenario),
                std::move(*scenario_text)};
 }
 
@@ -102,7 +107,7 @@ Result<PlannedProcedure> plan_procedure(const std::string& name, const config::B
   const auto texts = texts_of(plan->files);
   if (!texts) return texts.error();
   const nlohmann::ordered_json record{{"files", *texts}, {"parameters", to_json(parameters)}};
-  return PlannedProcedure{std::move(*plan), record.dump()};
+  return PlannedProcedure{std::move(*plan), text_of(record)};
 }
 
 Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,

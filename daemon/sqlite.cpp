@@ -81,36 +81,40 @@ Statement::Statement(sqlite3_stmt* statement, std::string path)
     : statement_(statement), path_(std::move(path)) {}
 
 Statement& Statement::bind(std::int64_t value) {
-  sqlite3_bind_int64(statement_.get(), next_++, value);
-  return *this;
+  return bound(sqlite3_bind_int64(statement_.get(), next_, value));
 }
 
 Statement& Statement::bind(double value) {
-  sqlite3_bind_double(statement_.get(), next_++, value);
-  return *this;
+  return bound(sqlite3_bind_double(statement_.get(), next_, value));
 }
 
 Statement& Statement::bind(std::string_view text) {
-  sqlite3_bind_text64(statement_.get(), next_++, text.data(), text.size(), SQLITE_TRANSIENT,
-                      SQLITE_UTF8);
-  return *this;
+  return bound(sqlite3_bind_text64(statement_.get(), next_, text.data(), text.size(),
+                                   SQLITE_TRANSIENT, SQLITE_UTF8));
 }
 
 Statement& Statement::bind(std::span<const std::byte> blob) {
-  if (blob.empty()) {
-    sqlite3_bind_zeroblob(statement_.get(), next_++, 0);
-  } else {
-    sqlite3_bind_blob64(statement_.get(), next_++, blob.data(), blob.size(), SQLITE_STATIC);
-  }
-  return *this;
+  if (blob.empty()) return bound(sqlite3_bind_zeroblob(statement_.get(), next_, 0));
+  return bound(
+      sqlite3_bind_blob64(statement_.get(), next_, blob.data(), blob.size(), SQLITE_STATIC));
 }
 
 Statement& Statement::bind_null() {
-  sqlite3_bind_null(statement_.get(), next_++);
+  return bound(sqlite3_bind_null(statement_.get(), next_));
+}
+
+Statement& Statement::bound(int code) {
+  if (code != SQLITE_OK && bind_code_ == SQLITE_OK) bind_code_ = code;
+  ++next_;
   return *this;
 }
 
 Result<bool> Statement::step() {
+  if (bind_code_ != SQLITE_OK) {
+    const char* reason = sqlite3_errstr(bind_code_);
+    reset();
+    return Error{ErrorCode::kStore, fmt::format("{}: a value cannot be stored: {}", path_, reason)};
+  }
   const int code = sqlite3_step(statement_.get());
   if (code == SQLITE_ROW) return true;
   if (code == SQLITE_DONE) return false;
@@ -130,6 +134,7 @@ void Statement::reset() {
   sqlite3_reset(statement_.get());
   sqlite3_clear_bindings(statement_.get());
   next_ = 1;
+  bind_code_ = SQLITE_OK;
 }
 
 bool Statement::is_null(int column) const {

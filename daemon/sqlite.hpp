@@ -35,7 +35,7 @@ class Statement {
   Statement& bind(std::span<const std::byte> blob);
   Statement& bind_null();
 
-  /// True when there is a row to read.
+  /// True when there is a row to read. An error when a value could not be bound, too.
   Result<bool> step();
   /// For a statement without rows: steps and resets, so that it can be bound again.
   Status run();
@@ -50,12 +50,14 @@ class Statement {
   std::span<const std::byte> blob(int column) const;
 
  private:
+  Statement& bound(int code);
   struct Finalise {
     void operator()(sqlite3_stmt* statement) const;
   };
   std::unique_ptr<sqlite3_stmt, Finalise> statement_;
   std::string path_;
   int next_ = 1;
+  int bind_code_ = 0;  ///< of the first bind that failed since the last reset
 };
 
 class Database {
