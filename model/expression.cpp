@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <limits>
 #include <numbers>
+#include <string_view>
 
 namespace fogbench::model {
 namespace {
@@ -11,6 +13,18 @@ namespace {
 void define_constants(mu::Parser& parser) {
   parser.DefineConst("pi", std::numbers::pi);
   parser.DefineConst("e", std::numbers::e);
+}
+
+/// Whether a single '=' stands anywhere: the parser would take it for an assignment and write into
+/// the table's columns.
+bool assigns(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    const bool follows = i > 0 && std::string_view("=<>!").find(text[i - 1]) != text.npos;
+    const bool leads = i + 1 < text.size() && text[i + 1] == '=';
+    if (!follows && !leads) return true;
+  }
+  return false;
 }
 
 /// For GetUsedVar, which wants an address for every name.
@@ -26,6 +40,9 @@ Result<Expression> Expression::parse(const std::string& term, const std::string&
   const auto bad = [&](const std::string& what) {
     return Error{ErrorCode::kBadInput, fmt::format("term {}: {}", term, what)};
   };
+  if (assigns(text)) {
+    return bad(fmt::format("found an assignment in '{}', expected a formula; equal is ==", text));
+  }
   Expression expression;
   expression.text_ = text;
   std::set<std::string> used;
@@ -79,8 +96,12 @@ Eigen::VectorXd Expression::evaluate(const Signals& signals, std::span<const dou
     // The parser only reads its variables.
     parser.DefineVar(name, const_cast<double*>(signals.signal(name).data()));  // NOLINT
   }
-  parser.SetExpr(text_);
-  parser.Eval(result.data(), static_cast<int>(result.size()));
+  try {
+    parser.SetExpr(text_);
+    parser.Eval(result.data(), static_cast<int>(result.size()));
+  } catch (const mu::ParserError&) {  // parse() has tried it: not seen yet
+    result.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
   return result;
 }
 

@@ -1,0 +1,44 @@
+#include "model/expression.hpp"
+
+#include <gtest/gtest.h>
+
+#include "model/table.hpp"
+
+namespace fogbench::model {
+namespace {
+
+class ExpressionTest : public testing::Test {
+ protected:
+  ExpressionTest() { table_.set_column("x", {1.0, 2.0, 3.0}); }
+  Result<Expression> parse(const std::string& text) const {
+    return Expression::parse("my_term", text, {"a"}, Signals(table_, 21.0));
+  }
+  Table table_;
+};
+
+TEST_F(ExpressionTest, ComparesButNeverAssigns) {
+  for (const char* text : {"x == 2", "x <= 2", "x >= 2", "x != 2", "x==2"}) {
+    EXPECT_TRUE(parse(text)) << text;
+  }
+  for (const char* text : {"a = 3", "x = 3", "x=a", "x += 1", "x -= 1", "x *= 2", "x /= 2"}) {
+    const auto expression = parse(text);
+    ASSERT_FALSE(expression) << text;
+    EXPECT_EQ(expression.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(expression.error().message.find("term my_term: found an assignment"),
+              std::string::npos)
+        << expression.error().message;
+  }
+  EXPECT_EQ(table_.column("x")[0], 1.0);
+}
+
+TEST_F(ExpressionTest, TakesParametersInTheirOrder) {
+  const auto expression = parse("x * a + (x == 2)");
+  ASSERT_TRUE(expression) << expression.error().message;
+  ASSERT_EQ(expression->parameters(), std::vector<std::string>{"a"});
+  const std::vector<double> values{10.0};
+  const Eigen::VectorXd result = expression->evaluate(Signals(table_, 21.0), values);
+  EXPECT_EQ(result, (Eigen::VectorXd(3) << 10.0, 21.0, 30.0).finished());
+}
+
+}  // namespace
+}  // namespace fogbench::model
