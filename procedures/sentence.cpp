@@ -74,7 +74,8 @@ std::string sentence(const PlannedStep& step) {
 
 std::string duration_text(Seconds duration) {
   const double seconds = duration.count();
-  if (seconds < 60.0) return fmt::format("{} s", seconds);
+  constexpr double kLongest = 1e12;  // more makes no sense in hours, and no integer beyond some
+  if (!(seconds >= 60.0 && seconds <= kLongest)) return fmt::format("{} s", seconds);
   const auto whole = static_cast<long long>(std::llround(seconds));
   const auto h = whole / 3600, min = whole / 60 % 60, s = whole % 60;
   std::string text;

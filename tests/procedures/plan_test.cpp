@@ -139,6 +139,7 @@ TEST(DurationText, HasNoMoreUnitsThanNeeded) {
   EXPECT_EQ(duration_text(Seconds{0.5}), "0.5 s");
   EXPECT_EQ(duration_text(Seconds{60.0}), "1 min");
   EXPECT_EQ(duration_text(Seconds{3665.0}), "1 h 1 min 5 s");
+  EXPECT_EQ(duration_text(Seconds{1e300}), "1e+300 s");
 }
 
 }  // namespace
