@@ -52,7 +52,7 @@ TEST(Reading, WrongTypeSaysWhatWasFoundAndExpected) {
 
 TEST(Reading, NumberOutsideItsBoundsSaysThem) {
   EXPECT_EQ(bench_message(R"([{"op": "replace", "path": "/simulation/step_s", "value": 11}])"),
-            "changed.json: /simulation/step_s: found 11, expected a number from 0.001 to 10");
+            "changed.json: /simulation/step_s: found 11, expected a number from 0.001 to 1");
   EXPECT_EQ(bench_message(R"([{"op": "replace", "path": "/gyro/max_gap_s", "value": 0}])"),
             "changed.json: /gyro/max_gap_s: found 0, expected a number above 0");
 }
