@@ -23,24 +23,41 @@ job_count() {
 }
 
 # with_progress WHAT LOG COMMAND...: runs COMMAND with its output in LOG, and shows how far it is
-# from the "[3/70]" of ninja or the " 3/70 Test" of ctest, at most a line every tenth of the way
-# and every three seconds.
+# from the "[3/70]" of ninja or the " 3/70 Test" of ctest: at most a line every tenth of the way
+# and every three seconds, and a sign of life when nothing has been said for half a minute.
 with_progress() {
-  local what=$1 log=$2 status=0 line tenth shown=-1 started=$SECONDS last=$SECONDS
+  local what=$1 log=$2 status=0
   shift 2
   mkdir -p "$(dirname "$log")"
   : > "$log"
-  "$@" < /dev/null 2>&1 | while IFS= read -r line; do
-    printf '%s\n' "$line" >> "$log"
-    if [[ $line =~ ^(\[|\ *)([0-9]+)/([0-9]+)(\]|\ Test) ]]; then
-      tenth=$((10 * BASH_REMATCH[2] / BASH_REMATCH[3]))
-      if [ "$tenth" -eq 10 ] || { [ "$tenth" -gt "$shown" ] && [ $((SECONDS - last)) -ge 3 ]; }; then
-        printf '  %s: %3d %% (%d of %d, %d s)\n' "$what" $((10 * tenth)) \
-          "${BASH_REMATCH[2]}" "${BASH_REMATCH[3]}" $((SECONDS - started))
-        shown=$tenth
-        last=$SECONDS
-      fi
-    fi
-  done || status=$?
+  "$@" < /dev/null 2>&1 | show_progress "$what" "$log" || status=$?
   return "$status"
+}
+
+show_progress() {
+  local what=$1 log=$2 line part='' rest='' tenth shown=-1 at='' started=$SECONDS last=$SECONDS
+  while :; do
+    if IFS= read -r -t 10 part; then
+      line=$rest$part
+      rest=''
+      printf '%s\n' "$line" >> "$log"
+      if [[ $line =~ ^(\[|\ *)([0-9]+)/([0-9]+)(\]|\ Test) ]]; then
+        at="${BASH_REMATCH[2]} of ${BASH_REMATCH[3]}"
+        tenth=$((10 * BASH_REMATCH[2] / BASH_REMATCH[3]))
+        if [ "$tenth" -eq 10 ] || { [ "$tenth" -gt "$shown" ] && [ $((SECONDS - last)) -ge 3 ]; }; then
+          printf '  %s: %3d %% (%s, %d s)\n' "$what" $((10 * tenth)) "$at" $((SECONDS - started))
+          shown=$tenth
+          last=$SECONDS
+        fi
+      fi
+    elif [ $? -le 128 ]; then  # the end, not the time-out
+      break
+    else
+      rest+=$part
+    fi
+    if [ $((SECONDS - last)) -ge 30 ]; then
+      printf '  %s: %s done, %d s\n' "$what" "${at:-nothing}" $((SECONDS - started))
+      last=$SECONDS
+    fi
+  done
 }
