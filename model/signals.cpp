@@ -13,8 +13,6 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<std::string_view, 3> kFields = {"field_x_ut", "field_y_ut", "field_z_ut"};
-/// 100 uT, the unit in which fields enter every effect.
-constexpr double kFieldUnit = 100.0;
 /// Half of the window of a derived temperature rate. Long enough that 1 mK of sensor noise stays
 /// below 0.1 degC/h, short against the thermostat's ramps.
 constexpr double kRateHalfWindow_s = 30.0;
@@ -221,7 +219,7 @@ Signals::Values Signals::coil_heat() const {
   bool any_field = false;
   for (const std::string_view name : kFields) {
     if (!has_numbers(name)) continue;
-    add_squares(name, kFieldUnit);
+    add_squares(name, kFieldUnitUt);
     any_field = true;
   }
   if (!any_field) add_squares("coil_current_a", 1.0);

@@ -24,6 +24,9 @@
 
 namespace fogbench::model {
 
+/// Fields enter every effect in units of 100 uT.
+inline constexpr double kFieldUnitUt = 100.0;
+
 struct EffectInfo;
 
 /// Cheap to copy. Not thread-safe: signals are derived when first asked for.

@@ -28,7 +28,14 @@ class FunctionEffect final : public Effect {
 /// The three effects of an x/y/z family.
 using Family = std::array<FunctionEffect, 3>;
 
-/// Fields enter every effect as h, in units of 100 uT.
-inline constexpr double kFieldUnit_ut = 100.0;
+/// h: the field of `column` in units of 100 uT.
+inline Eigen::ArrayXd field(const Signals& signals, std::string_view column) {
+  return signals.signal(column) / kFieldUnitUt;
+}
+
+/// t: the temperature above the reference, degC.
+inline Eigen::ArrayXd excess_temperature(const Signals& signals) {
+  return signals.signal("temperature_c").array() - signals.reference_temperature_c();
+}
 
 }  // namespace fogbench::model::effects

@@ -3,13 +3,6 @@
 #include "model/effects/list.hpp"
 
 namespace fogbench::model::effects {
-namespace {
-
-Eigen::ArrayXd field(const Signals& signals, std::string_view axis) {
-  return signals.signal(axis) / kFieldUnit_ut;
-}
-
-}  // namespace
 
 const Family& magnetic_linear() {
   static const Family family = {

@@ -3,13 +3,6 @@
 #include "model/effects/list.hpp"
 
 namespace fogbench::model::effects {
-namespace {
-
-Eigen::ArrayXd field(const Signals& signals, std::string_view axis) {
-  return signals.signal(axis) / kFieldUnit_ut;
-}
-
-}  // namespace
 
 const Family& magnetic_temperature() {
   static const Family family = {
@@ -23,9 +16,7 @@ const Family& magnetic_temperature() {
                       .confused_with = "magnetic_linear_x",
                       .source = "the Verdet constant's dependence on temperature"},
                      [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
-                       return field(signals, "field_x_ut") *
-                              (signals.signal("temperature_c").array() -
-                               signals.reference_temperature_c());
+                       return field(signals, "field_x_ut") * excess_temperature(signals);
                      }),
       FunctionEffect({.id = "magnetic_temperature_y",
                       .formula = "h_y t",
@@ -37,9 +28,7 @@ const Family& magnetic_temperature() {
                       .confused_with = "magnetic_linear_y",
                       .source = "the Verdet constant's dependence on temperature"},
                      [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
-                       return field(signals, "field_y_ut") *
-                              (signals.signal("temperature_c").array() -
-                               signals.reference_temperature_c());
+                       return field(signals, "field_y_ut") * excess_temperature(signals);
                      }),
       FunctionEffect({.id = "magnetic_temperature_z",
                       .formula = "h_z t",
@@ -51,9 +40,7 @@ const Family& magnetic_temperature() {
                       .confused_with = "magnetic_linear_z",
                       .source = "the Verdet constant's dependence on temperature"},
                      [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
-                       return field(signals, "field_z_ut") *
-                              (signals.signal("temperature_c").array() -
-                               signals.reference_temperature_c());
+                       return field(signals, "field_z_ut") * excess_temperature(signals);
                      })};
   return family;
 }

@@ -19,9 +19,7 @@ const FunctionEffect& temperature_hysteresis() {
        .source = "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions (Springer 1996)",
        .has_history = true},
       [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
-        return play(signals,
-                    (signals.signal("temperature_c").array() - signals.reference_temperature_c()),
-                    inner[0]);
+        return play(signals, excess_temperature(signals), inner[0]);
       });
   return effect;
 }

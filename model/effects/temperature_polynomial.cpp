@@ -3,13 +3,6 @@
 #include "model/effects/list.hpp"
 
 namespace fogbench::model::effects {
-namespace {
-
-Eigen::VectorXd excess(const Signals& signals) {
-  return signals.signal("temperature_c").array() - signals.reference_temperature_c();
-}
-
-}  // namespace
 
 const Family& temperature_polynomial() {
   static const Family family = {
@@ -25,7 +18,7 @@ const Family& temperature_polynomial() {
                "temperature_quadratic and temperature_cubic over a short range; heater_power",
            .source = "The acceptance procedure: polynomial of the temperature error"},
           [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
-            return excess(signals);
+            return excess_temperature(signals);
           }),
       FunctionEffect({.id = "temperature_quadratic",
                       .formula = "t^2",
@@ -37,7 +30,7 @@ const Family& temperature_polynomial() {
                       .confused_with = "temperature_linear over a short range",
                       .source = "The acceptance procedure: polynomial of the temperature error"},
                      [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
-                       return excess(signals).array().square().matrix();
+                       return excess_temperature(signals).square();
                      }),
       FunctionEffect(
           {.id = "temperature_cubic",
@@ -50,7 +43,7 @@ const Family& temperature_polynomial() {
            .confused_with = "temperature_linear, temperature_quadratic over a short range",
            .source = "The acceptance procedure: polynomial of the temperature error"},
           [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
-            return excess(signals).array().cube().matrix();
+            return excess_temperature(signals).cube();
           })};
   return family;
 }

@@ -17,8 +17,7 @@ const FunctionEffect& temperature_rate_cross() {
        .source =
            "D. M. Shupe, Applied Optics 19 (1980) 654, with temperature-dependent fibre data"},
       [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
-        return (signals.signal("temperature_c").array() - signals.reference_temperature_c()) *
-               signals.signal("temperature_rate_c_per_h").array();
+        return excess_temperature(signals) * signals.signal("temperature_rate_c_per_h").array();
       });
   return effect;
 }
