@@ -3,6 +3,7 @@
 // suffix of the name. Each unit has one suffix, listed once, in kUnitSuffixes.
 
 #include <chrono>
+#include <cmath>
 #include <compare>
 #include <string_view>
 
@@ -33,9 +34,13 @@ using CelsiusPerHour = Quantity<struct CelsiusPerHourUnit>;
 using DegPerHour = Quantity<struct DegPerHourUnit>;
 using Microtesla = Quantity<struct MicroteslaUnit>;
 using Ampere = Quantity<struct AmpereUnit>;
-using Volt = Quantity<struct VoltUnit>;
 using Watt = Quantity<struct WattUnit>;
 using Degree = Quantity<struct DegreeUnit>;
+
+/// How far apart two directions are, whichever turn they are written in: 0 to 180 deg.
+inline Degree angle_between(Degree a, Degree b) {
+  return Degree{std::abs(std::remainder(a.value - b.value, 360.0))};
+}
 
 /// A span of time as configuration and results speak of it, s.
 using Seconds = std::chrono::duration<double>;
@@ -51,7 +56,9 @@ inline constexpr UnitSuffix kUnitSuffixes[] = {
     {"_deg_per_h_per_sqrt_h", "deg/h/sqrt(h)"},
     {"_deg_per_sqrt_h", "deg/sqrt(h)"},
     {"_deg_per_h", "deg/h"},
+    {"_c_per_h2", "degC/h^2"},
     {"_c_per_h", "degC/h"},
+    {"_per_h", "1/h"},
     {"_ut_per_a", "uT/A"},
     {"_c_per_w", "degC/W"},
     {"_w_per_k", "W/K"},

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 
 #include "drivers/named_error.hpp"
 
@@ -14,11 +13,6 @@ using namespace std::chrono_literals;
 
 constexpr Clock::Duration kLookEvery = 500ms;
 constexpr int kPatience = 3;  ///< times the usual time of a move
-
-/// How far apart two azimuths are, whichever turn they are written in.
-double apart_deg(double a, double b) {
-  return std::abs(std::remainder(a - b, 360.0));
-}
 
 }  // namespace
 
@@ -45,7 +39,9 @@ Status ScpiTurntable::rotate_to(Degree azimuth) {
   for (;;) {
     const auto reached = dialogue_.query_number(device_.measure_query);
     if (!reached) return reached.error();
-    if (apart_deg(*reached, azimuth.value) <= device_.read_back_tolerance) return {};
+    if (config::angle_between(Degree{*reached}, azimuth).value <= device_.read_back_tolerance) {
+      return {};
+    }
     if (clock_.now() >= give_up) {
       return dialogue_.error(
           ErrorCode::kTimeout,

@@ -23,11 +23,7 @@ constexpr std::size_t kFieldReadings = 3;
 /// magnetometer's own filter.
 constexpr std::chrono::milliseconds kFieldSettle{500};
 /// A turntable that misses by more has not turned.
-constexpr double kAzimuthTolerance = 0.5;
-
-double angle_between_deg(Degree a, Degree b) {
-  return std::abs(std::remainder(a.value - b.value, 360.0));
-}
+constexpr Degree kAzimuthTolerance{0.5};
 
 /// The measured field along the pairs' axes, up and north: x is up, y points north at azimuth 0 and
 /// z at 90 deg.
@@ -86,7 +82,8 @@ Result<StepResult> RunSession::act(const CompensateField& step) {
 
 Result<StepResult> RunSession::act(const SweepLevel& step) {
   const double needed = step.axis == Axis::kZ ? 90.0 : 0.0;
-  if (step.axis != Axis::kX && angle_between_deg(azimuth_, Degree{needed}) > kAzimuthTolerance) {
+  if (step.axis != Axis::kX &&
+      config::angle_between(azimuth_, Degree{needed}) > kAzimuthTolerance) {
     return Error{ErrorCode::kDevice,
                  fmt::format("turntable: the gyro stands at azimuth {:.2f} deg, the sweep needs {}",
                              azimuth_.value, needed)};
@@ -118,7 +115,7 @@ Result<StepResult> RunSession::act(const Rotate& step) {
   if (!turned) return turned.error();
   const auto read = read_azimuth();
   if (!read) return read.error();
-  if (angle_between_deg(azimuth_, step.azimuth) > kAzimuthTolerance) {
+  if (config::angle_between(azimuth_, step.azimuth) > kAzimuthTolerance) {
     return Error{ErrorCode::kDevice,
                  fmt::format("turntable: stands at {:.2f} deg after turning to {} deg",
                              azimuth_.value, step.azimuth.value)};

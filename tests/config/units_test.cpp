@@ -16,6 +16,8 @@ TEST(Units, SuffixSaysTheUnit) {
   EXPECT_EQ(unit_of("angle_random_walk_deg_per_sqrt_h"), "deg/sqrt(h)");
   EXPECT_EQ(unit_of("coil_ut_per_a"), "uT/A");
   EXPECT_EQ(unit_of("gradient_c_per_w"), "degC/W");
+  EXPECT_EQ(unit_of("temperature_acceleration_c_per_h2"), "degC/h^2");
+  EXPECT_EQ(unit_of("ambient_steps_per_h"), "1/h");
   EXPECT_EQ(unit_of("settle_s"), "s");
   EXPECT_EQ(unit_of("run"), "");
   EXPECT_EQ(unit_of(""), "");
@@ -33,6 +35,12 @@ TEST(Units, QuantitiesOfOneUnitAddAndCompare) {
   EXPECT_LT(-Ampere{2}, Ampere{1});
   EXPECT_EQ(2.0 * Watt{3} - Watt{1}, Watt{5});
   EXPECT_EQ(Degree{90} / 2.0, Degree{45});
+}
+
+TEST(Units, AnglesAreApartAsDirectionsAre) {
+  EXPECT_EQ(angle_between(Degree{90}, Degree{-270}).value, 0.0);
+  EXPECT_EQ(angle_between(Degree{359}, Degree{2}).value, 3.0);
+  EXPECT_EQ(angle_between(Degree{0}, Degree{180}).value, 180.0);
 }
 
 }  // namespace
