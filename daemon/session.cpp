@@ -1,6 +1,5 @@
 #include "daemon/session.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -145,8 +144,7 @@ Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure) {
   header.seed = seed_;
   header.gyro_serial_number = setup_.bench.gyro.serial_number;
   header.software_version = FOGBENCH_VERSION;
-  header.started_at =
-      fmt::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(clock_->wall_now()));
+  header.started_at = drivers::utc_text(clock_->wall_now());
   header.frame_rate_hz = bench_.gyro->frame_rate_hz();
   header.reference_rate_deg_per_h = setup_.bench.gyro.reference_rate.value;
   return engine_->run(procedure.plan, header);

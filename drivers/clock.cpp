@@ -1,5 +1,8 @@
 #include "drivers/clock.hpp"
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
 #include <thread>
 
 namespace fogbench::drivers {
@@ -24,6 +27,10 @@ void SteadyClock::sleep_until(Instant deadline) {
       static_cast<double>(deadline.time_since_epoch().count()) / speed_};
   std::this_thread::sleep_until(
       started_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(real));
+}
+
+std::string utc_text(Clock::WallTime time) {
+  return fmt::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(time));
 }
 
 VirtualClock::VirtualClock()

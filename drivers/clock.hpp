@@ -2,7 +2,9 @@
 // The only source of time. A SteadyClock is the machine's; a VirtualClock jumps to the next
 // deadline at once, so that eight hours of bench time take seconds and every run repeats exactly.
 
+#include <algorithm>
 #include <chrono>
+#include <string>
 
 namespace fogbench::drivers {
 
@@ -54,12 +56,18 @@ class VirtualClock final : public Clock {
   WallTime start_;
 };
 
+/// ISO 8601 to the second: "2026-01-01T00:00:00Z".
+std::string utc_text(Clock::WallTime time);
+
 /// Seconds as a double, for results and tables.
 constexpr double to_seconds(Clock::Duration d) {
   return std::chrono::duration<double>(d).count();
 }
-/// Rounded to the nanosecond.
+/// Rounded to the nanosecond, and held within 30 years: sums of a few stay in range, whatever a
+/// file says. NaN is 0.
 constexpr Clock::Duration from_seconds(double s) {
+  constexpr double kLongest = 1e9;
+  s = s != s ? 0.0 : std::clamp(s, -kLongest, kLongest);
   return Clock::Duration{static_cast<Clock::Duration::rep>(s * 1e9 + (s < 0 ? -0.5 : 0.5))};
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "drivers/named_error.hpp"
 
 namespace fogbench::drivers {
@@ -9,8 +11,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A gyro sends without pause: ten periods of the slowest instrument (10 Hz) are silence.
+/// A gyro sends without pause: a second without a frame is silence, or ten periods of a slow one.
 constexpr Clock::Duration kLongestSilence = 1s;
+constexpr double kLongestSilencePeriods = 10.0;
 
 /// A line that never runs empty must not hold the caller for ever: no more is taken at once than
 /// this, and twice what is due since the last time.
@@ -24,6 +27,8 @@ SerialGyro::SerialGyro(std::string name, const config::GyroConfig& config,
       identity_(config.device.name),
       frame_rate_hz_(config.device.frame_rate_hz),
       bytes_per_s_(config.device.frame_rate_hz * config.device.frame_bytes),
+      longest_silence_(
+          std::max(kLongestSilence, from_seconds(kLongestSilencePeriods / frame_rate_hz_))),
       transport_(std::move(transport)),
       clock_(clock),
       parser_(config.device),
@@ -86,7 +91,7 @@ Status SerialGyro::read(GyroBlock& out) {
     bytes_since_good_ = 0;
     return {};
   }
-  if (now - last_good_ <= kLongestSilence) return {};
+  if (now - last_good_ <= longest_silence_) return {};
   const double silence = to_seconds(now - last_good_);
   if (bytes_since_good_ == 0) {
     return Error{ErrorCode::kTimeout, fmt::format("{}: no frame for {:.1f} s, expected {} a second",

@@ -22,9 +22,9 @@ class SerialGyro final : public Gyro {
                                                   Clock& clock);
 
   Result<std::string> identity() override { return identity_; }
-  /// Silent for longer than a second: kTimeout when no byte came, kProtocol when bytes came but no
-  /// good frame was among them (wrong baud rate, wrong layout). Good frames are appended even when
-  /// an error is returned.
+  /// Silent for longer than a second and ten frame periods: kTimeout when no byte came, kProtocol
+  /// when bytes came but no good frame was among them (wrong baud rate, wrong layout). Good frames
+  /// are appended even when an error is returned.
   Status read(GyroBlock& out) override;
   const StreamStatistics& statistics() const override { return parser_.statistics(); }
   Clock::Instant time_of(std::int64_t index) const override;
@@ -39,6 +39,7 @@ class SerialGyro final : public Gyro {
   std::string identity_;
   double frame_rate_hz_;
   double bytes_per_s_;
+  Clock::Duration longest_silence_;
   std::unique_ptr<SerialTransport> transport_;
   Clock& clock_;
   FrameParser parser_;

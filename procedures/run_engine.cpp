@@ -1,6 +1,5 @@
 #include "procedures/run_engine.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <cassert>
@@ -194,8 +193,7 @@ Result<RunEnd> RunEngine::Run::finish(const Status& outcome) {
     end.reason += "; " + safe.error().message;
   }
   end.stream = engine_.bench_.gyro->statistics();
-  end.ended_at =
-      fmt::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(engine_.clock_.wall_now()));
+  end.ended_at = drivers::utc_text(engine_.clock_.wall_now());
   enter(
       end.outcome == RunOutcome::kCompleted
           ? RunEvent::kSafeDone

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace fogbench::drivers {
 namespace {
 
@@ -16,11 +18,28 @@ TEST(VirtualClock, MovesOnlyBySleepingAndNeverBack) {
   EXPECT_EQ(clock.now().time_since_epoch(), 8h);
 }
 
+TEST(UtcText, IsIso8601ToTheSecond) {
+  VirtualClock clock;
+  clock.sleep_for(26h + 3min + 4999ms);
+  EXPECT_EQ(utc_text(clock.wall_now()), "2026-01-02T02:03:04Z");
+}
+
 TEST(VirtualClock, WallTimeFollowsTheSteadyTime) {
   VirtualClock clock;
   const auto before = clock.wall_now();
   clock.sleep_for(1500ms);
   EXPECT_EQ(clock.wall_now() - before, 1500ms);
+}
+
+TEST(FromSeconds, RoundsAndStaysInRangeWhateverAFileSays) {
+  EXPECT_EQ(from_seconds(1.5), 1500ms);
+  EXPECT_EQ(from_seconds(-0.25e-9), 0ns);
+  EXPECT_EQ(from_seconds(1e300), 1'000'000'000s);
+  EXPECT_EQ(from_seconds(-1e300), -1'000'000'000s);
+  EXPECT_EQ(from_seconds(std::numeric_limits<double>::quiet_NaN()), 0s);
+  VirtualClock clock;
+  clock.sleep_for(from_seconds(1e300));
+  EXPECT_GT(clock.now() + from_seconds(1e300), clock.now());
 }
 
 TEST(SteadyClock, RunsFasterByItsSpeed) {

@@ -11,7 +11,8 @@ namespace {
 using namespace std::chrono_literals;
 using support::kvh_frame;
 
-/// A gyro at 1 kHz on a virtual clock: frame i is sent at (i + 1) ms.
+/// A gyro, at 1 kHz unless told otherwise, on a virtual clock: frame i is sent when i + 1 periods
+/// have passed.
 class SerialGyroTest : public testing::Test {
  protected:
   SerialGyroTest() {
@@ -19,7 +20,7 @@ class SerialGyroTest : public testing::Test {
     line_.before_read = [this] { send_due_frames(); };
   }
   void send_due_frames() {
-    for (; (sent_ + 1) * 1ms <= clock_.now().time_since_epoch(); ++sent_) {
+    for (; (sent_ + 1) * period_ <= clock_.now().time_since_epoch(); ++sent_) {
       if (!mute_) line_.put(kvh_frame(sent_, static_cast<double>(sent_)));
     }
   }
@@ -30,6 +31,7 @@ class SerialGyroTest : public testing::Test {
   VirtualClock clock_;
   config::GyroConfig config_;
   support::FakeLine line_;
+  Clock::Duration period_ = 1ms;
   std::int64_t sent_ = 0;
   bool mute_ = false;
 };
@@ -96,6 +98,21 @@ TEST_F(SerialGyroTest, BytesWithoutFramesAreAProtocolError) {
   EXPECT_NE(status.error().message.find("gyro: 5000 bytes in 2.0 s but no good frame"),
             std::string::npos)
       << status.error().message;
+}
+
+TEST_F(SerialGyroTest, ASlowGyroIsNotSilentBetweenItsFrames) {
+  period_ = 5s;
+  config_.device.frame_rate_hz = 0.2;
+  auto gyro = open();
+  ASSERT_TRUE(gyro) << gyro.error().message;
+  GyroBlock block;
+  clock_.sleep_for(4s);
+  EXPECT_TRUE((*gyro)->read(block));
+  mute_ = true;
+  clock_.sleep_for(51s);
+  const Status silent = (*gyro)->read(block);
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error().code, ErrorCode::kTimeout);
 }
 
 TEST_F(SerialGyroTest, ASilentLineCannotBeOpened) {
