@@ -117,10 +117,12 @@ struct Step {
 /// A parameter's default: a number or a list of numbers.
 using ParameterValue = std::variant<double, std::vector<double>>;
 
+using Parameters = std::map<std::string, ParameterValue>;  ///< by name
+
 struct ProcedureConfig {
   std::string name;
   std::string description;
-  std::map<std::string, ParameterValue> parameters;
+  Parameters parameters;
   std::vector<Step> steps;
   std::filesystem::path file;
 };

@@ -2,9 +2,11 @@
 // The results of a run as the acceptance procedure reports them, from its points alone.
 //
 //   deviation   mean of a point - mean of the last baseline before it in the same test
-//   K           [omega(highest level) - omega(lowest)] / (their distance / 100 uT), commanded
-//   levels slope       ordinary least squares against the measured field of the swept axis, per 100
-//   uT closure     z0 - 2 z12 + z24 over the three zero-field readings of a sweep 0, +, 0, -, 0:
+//   K           [omega(highest level) - omega(lowest)] / (their distance / 100 uT),
+//               commanded levels
+//   slope       ordinary least squares, per 100 uT,
+//               against the measured field of the swept axis
+//   closure     z0 - 2 z12 + z24 over the three zero-field readings of a sweep 0, +, 0, -, 0:
 //               0 for a drift that is linear in time, -3r for a remanence of +-r
 //
 // Standard errors are those of white noise within the windows, so lower bounds; the fitted model

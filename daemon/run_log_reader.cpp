@@ -29,8 +29,8 @@ constexpr auto kSelectRuns =
     "frames_invalid, frames_repeated, frames_missing, bytes_skipped, raw_sha256, "
     "(SELECT count(*) FROM points WHERE points.run = runs.run), "
     "(SELECT count(void_because) FROM points WHERE points.run = runs.run), "
-    "(SELECT coalesce(sum(frames), 0) FROM gyro_chunks WHERE gyro_chunks.run = runs.run), "
-    "(SELECT max(time_s) FROM points WHERE points.run = runs.run) FROM runs";
+    "(SELECT coalesce(sum(frames), 0) FROM gyro_chunks WHERE gyro_chunks.run = runs.run) "
+    "FROM runs";
 
 /// The enumerator of that name; the last one for a name that this version does not know.
 template <class Enum, std::size_t N>
@@ -88,7 +88,6 @@ StoredRun read_run(const Statement& row) {
   stored.points = row.integer(column++);
   stored.points_void = row.integer(column++);
   stored.frames_stored = row.integer(column++);
-  stored.last_time_s = real();
   return stored;
 }
 
@@ -147,10 +146,8 @@ Result<std::vector<StoredPoint>> RunLogReader::points(std::int64_t run) {
   auto select = database_->prepare(sql + " FROM points WHERE run = ? ORDER BY point");
   if (!select) return select.error();
   select->bind(run);
-  std::int64_t number = 0;
   return collect<StoredPoint>(*select, [&] {
     StoredPoint stored;
-    stored.number = ++number;
     Point& point = stored.point;
     point.kind = parse(select->text(0), kKinds);
     point.test = static_cast<int>(select->integer(1));

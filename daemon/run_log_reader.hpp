@@ -24,7 +24,6 @@ struct StoredRun {
   std::int64_t points = 0;
   std::int64_t points_void = 0;
   std::int64_t frames_stored = 0;
-  double last_time_s = 0.0;  ///< centre of the last point; NaN when there is none
 
   bool completed() const { return end && end->outcome == procedures::RunOutcome::kCompleted; }
   /// "completed", "aborted", "failed" or "interrupted".
@@ -32,7 +31,6 @@ struct StoredRun {
 };
 
 struct StoredPoint {
-  std::int64_t number = 0;  ///< 1, 2... within the run
   procedures::Point point;
   std::string void_because;  ///< empty: valid
 };

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,7 +40,7 @@ Result<Setup> load_setup(const SetupOptions& options);
 /// kBadInput when an instrument is connected to anything but the simulated bench.
 Status check_simulated(const config::BenchConfig& bench);
 
-using Parameters = std::map<std::string, config::ParameterValue>;
+using config::Parameters;
 
 struct PlannedProcedure {
   procedures::Plan plan;

@@ -13,8 +13,6 @@
 
 namespace fogbench::procedures {
 
-using Parameters = std::map<std::string, config::ParameterValue>;
-
 /// Finds a called procedure by the name in the call; `caller` tells where to look first.
 using ProcedureLoader = std::function<Result<config::ProcedureConfig>(
     const std::string& name, const config::ProcedureConfig& caller)>;

@@ -27,7 +27,7 @@ Result<config::ProcedureConfig> load_called(const std::string& name,
 }  // namespace
 
 Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
-                       const std::map<std::string, config::ParameterValue>& overrides) {
+                       const Parameters& overrides) {
   std::vector<std::filesystem::path> files;
   const auto remember = [&files](const std::filesystem::path& file) {
     if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);

@@ -19,6 +19,7 @@ using config::Celsius;
 using config::Degree;
 using config::HeatingMode;
 using config::Microtesla;
+using config::Parameters;
 using config::Seconds;
 
 // The engine's instructions: config's steps with every number resolved.
@@ -89,7 +90,7 @@ struct Plan {
 /// (temperature, field, current, run time outside the bench's), one line with the procedure's file
 /// and the step's JSON pointer. `overrides` replace the procedure's parameter defaults.
 Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
-                       const std::map<std::string, config::ParameterValue>& overrides = {});
+                       const Parameters& overrides = {});
 
 /// The second half of it: sentences, estimates and limits of steps that are expanded already.
 Result<Plan> make_plan(const std::string& name, std::vector<PlannedStep> steps,

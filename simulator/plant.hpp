@@ -44,7 +44,6 @@ class Plant {
   double now_s() const;
   double step_s() const { return step_s_; }
   const TrueState& state() const { return state_; }
-  const ThermalPhysics& thermal() const { return thermal_; }
   ThermostatController& thermostat() { return thermostat_; }
   const ThermostatController& thermostat() const { return thermostat_; }
   MagneticPhysics& magnetic() { return magnetic_; }
