@@ -41,7 +41,12 @@ Result<Design> Design::make(const Signals& signals, const config::ModelFile& mod
     return Error{ErrorCode::kBadInput, "the model has no terms, expected at least one"};
   }
   for (const config::ModelTerm& term : model.terms) {
-    const Effect* effect = term.expression ? nullptr : find_effect(term.effect);
+    const Effect* effect = find_effect(term.effect);
+    if (term.expression && effect != nullptr) {
+      return bad_term(term,
+                      "is an effect of the catalogue, expected another name beside an "
+                      "expression");
+    }
     if (!term.expression && effect == nullptr) {
       return bad_term(term, unknown_effect(term.effect) + "; a new one needs an expression");
     }

@@ -10,6 +10,8 @@
 namespace fogbench::model {
 namespace {
 
+constexpr std::size_t kShown = 200;
+
 void define_constants(mu::Parser& parser) {
   parser.DefineConst("pi", std::numbers::pi);
   parser.DefineConst("e", std::numbers::e);
@@ -40,8 +42,10 @@ Result<Expression> Expression::parse(const std::string& term, const std::string&
   const auto bad = [&](const std::string& what) {
     return Error{ErrorCode::kBadInput, fmt::format("term {}: {}", term, what)};
   };
+  // A text of thousands of characters would drown what is said about it.
+  const std::string shown = text.size() > kShown ? text.substr(0, kShown) + "..." : text;
   if (assigns(text)) {
-    return bad(fmt::format("found an assignment in '{}', expected a formula; equal is ==", text));
+    return bad(fmt::format("found an assignment in '{}', expected a formula; equal is ==", shown));
   }
   Expression expression;
   expression.text_ = text;
@@ -58,10 +62,10 @@ Result<Expression> Expression::parse(const std::string& term, const std::string&
     parser.Eval();
     if (parser.GetNumResults() != 1) {
       return bad(
-          fmt::format("found {} values in '{}', expected one", parser.GetNumResults(), text));
+          fmt::format("found {} values in '{}', expected one", parser.GetNumResults(), shown));
     }
   } catch (const mu::ParserError& error) {
-    return bad(fmt::format("found '{}', expected a formula: {}", text, error.GetMsg()));
+    return bad(fmt::format("found '{}', expected a formula: {}", shown, error.GetMsg()));
   }
   for (const std::string& name : used) {
     const bool is_signal = signals.table().has(name) || signals.available(name);
@@ -77,7 +81,7 @@ Result<Expression> Expression::parse(const std::string& term, const std::string&
       return bad(
           fmt::format("found the name '{}' in '{}', expected a column or one of the term's "
                       "parameters ({})",
-                      name, text, signals.table().why_missing(name)));
+                      name, shown, signals.table().why_missing(name)));
     }
   }
   expression.parser_ = std::make_shared<mu::Parser>();

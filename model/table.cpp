@@ -53,6 +53,7 @@ std::vector<std::string> Table::column_names() const {
 std::string Table::why_missing(std::string_view name) const {
   const auto found = dropped_.find(name);
   if (found != dropped_.end()) return found->second;
+  if (has(name)) return fmt::format("column {}: found no number in any row, expected some", name);
   return fmt::format("column {}: found only {}, expected it among the columns", name,
                      fmt::join(column_names(), ", "));
 }

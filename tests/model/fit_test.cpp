@@ -311,18 +311,30 @@ TEST(Expression, ErrorsNameTheTerm) {
               HasSubstr("also a column"));
   EXPECT_THAT(error_of(table, model_of({formula("mine", "2*x", {{"b", 1.0}})})),
               HasSubstr("does not use"));
+  // muParser would write 3 into the column.
+  EXPECT_THAT(error_of(table, model_of({formula("mine", "x=3")})),
+              HasSubstr("found an assignment in 'x=3'"));
+  EXPECT_THAT(error_of(table, model_of({formula("mine", std::string(5000, '('))})),
+              testing::AllOf(HasSubstr("(..."), testing::SizeIs(testing::Le(400u))));
+  EXPECT_THAT(error_of(table, model_of({formula("bias_step", "x")})),
+              HasSubstr("term bias_step: is an effect of the catalogue"));
+  table.set_column("temperature_c", {kMissing, kMissing, kMissing});
+  EXPECT_THAT(error_of(table, model_of({term("temperature_linear")})),
+              HasSubstr("column temperature_c: found no number in any row"));
 }
 
 TEST(Expression, KnowsTheOperatorsThatAreDocumented) {
   Table table;
   table.set_column("x", {2.0});
-  ModelFile model = model_of({formula("f",
-                                      "-x^2 + 2^3^0 + exp(0) + ln(e) + sin(pi/2) + cos(0) + "
-                                      "atan(0) + sqrt(4) + abs(-1) + (x > 1 ? 10 : 20)")});
+  ModelFile model = model_of(
+      {formula("f",
+               "-x^2 + 2^3^0 + exp(0) + ln(e) + sin(pi/2) + cos(0) + "
+               "atan(0) + sqrt(4) + abs(-1) + (x > 1 ? 10 : 20) + (x == 2) + (x >= 3) + (x <= 1) + "
+               "(x != 2)")});
   model.terms[0].coefficient = 1.0;
   const auto value = predict(table, model);
   ASSERT_TRUE(value) << value.error().message;
-  EXPECT_NEAR((*value)[0], -4 + 2 + 1 + 1 + 1 + 1 + 0 + 2 + 1 + 10, 1e-12);
+  EXPECT_NEAR((*value)[0], -4 + 2 + 1 + 1 + 1 + 1 + 0 + 2 + 1 + 10 + 1, 1e-12);
 }
 
 TEST(Expression, ParameterOfOneTermIsSharedByTheOthers) {
