@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <system_error>
 #include <vector>
 
 namespace fogbench::config {
@@ -40,6 +41,15 @@ Result<fs::path> find_config(const std::string& kind, const std::string& name) {
   const fs::path folder = *directory / kind;
   const fs::path candidate = folder / (name + ".json");
   if (fs::is_regular_file(candidate, error)) return candidate;
+
+  if (const fs::file_status status = fs::status(name, error); fs::exists(status)) {
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("{}: is {}, a file was expected", name,
+                             fs::is_directory(status) ? "a directory" : "not a regular file")};
+  }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    return Error{ErrorCode::kBadInput, fmt::format("{}: {}", name, error.message())};
+  }
 
   std::vector<std::string> known;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;

@@ -69,5 +69,16 @@ TEST(Paths, UnknownNameListsTheKnownOnes) {
                 "simulated-1khz)"));
 }
 
+TEST(Paths, WhatIsNoFileIsSaidToBeWhatItIs) {
+  const ConfigDirectory set(kReady);
+  const support::TemporaryFolder folder;
+  EXPECT_THAT(message_of(find_config("models", folder.path().string())),
+              HasSubstr("is a directory, a file was expected"));
+  EXPECT_THAT(message_of(find_config("models", "/dev/null")), HasSubstr("is not a regular file"));
+  const std::string loop = (folder / "loop.json").string();
+  fs::create_symlink(loop, loop);
+  EXPECT_THAT(message_of(find_config("models", loop)), HasSubstr("symbolic links"));
+}
+
 }  // namespace
 }  // namespace fogbench::config
