@@ -30,11 +30,18 @@ AbortOnSignal::AbortOnSignal(procedures::RunEngine& engine) {
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // A terminal that is closed ends the run like the others, unless nohup asked to survive it.
+  struct sigaction before {};
+  sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
 }
 
 AbortOnSignal::~AbortOnSignal() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+  struct sigaction now {};
+  sigaction(SIGHUP, nullptr, &now);
+  if (now.sa_handler == on_signal) std::signal(SIGHUP, SIG_DFL);
   g_engine = nullptr;
   g_asked = false;
 }

@@ -93,7 +93,7 @@ TEST_F(FogbenchTest, KilledAtAnyMomentItLosesNoPrintedPoint) {
 }
 
 TEST_F(FogbenchTest, ASignalAbortsToTheSafeStateAndTheRecordSaysSo) {
-  for (const int number : {SIGTERM, SIGINT}) {
+  for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
     Process process(dry_run({"static-record", "--set", "average_s=1"}, {"--speed", "realtime"}));
     ASSERT_TRUE(process.wait_for_output("static ", 60s));
     process.signal(number);
