@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
+#include "cli/output.hpp"
 #include "config/model_file.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
@@ -18,6 +20,7 @@ struct AddOptions {
   std::vector<std::string> effects;
   std::string model;
   std::string output;
+  bool json = false;
 };
 
 Result<ExitStatus> run_add(const AddOptions& options) {
@@ -46,6 +49,11 @@ Result<ExitStatus> run_add(const AddOptions& options) {
   if (Status written = config::write_file(options.output, config::to_json_text(*model)); !written) {
     return written.error();
   }
+  if (options.json) {
+    print_json(
+        {{"file", options.output}, {"added", options.effects}, {"terms", model->terms.size()}});
+    return ExitStatus::kDone;
+  }
   fmt::print("{}: {} terms, with {} added\nNext: fogbench fit DATA --model {} -o FITTED.json\n",
              options.output, model->terms.size(), fmt::join(options.effects, ", "), options.output);
   return ExitStatus::kDone;
@@ -64,6 +72,7 @@ void add_add(CLI::App& app, Action& action) {
             ->required();
         command.add_option("-o,--output", options.output, "Where to write the extended model")
             ->required();
+        command.add_flag("--json", options.json, "One JSON document");
       },
       run_add);
 }

@@ -30,6 +30,23 @@ Result<std::filesystem::path> store_path(const std::string& store) {
   return std::filesystem::path(store);
 }
 
+std::string store_argument(const std::string& store) {
+  return store.empty() ? "" : " --store " + store;
+}
+
+void add_run_option(CLI::App& command, std::int64_t& run) {
+  // strtoll, which reads the number, would take any that is too large for the largest.
+  const auto number = [](const std::string& text) -> std::string {
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = error == std::errc{} && end == text.data() + text.size();
+    return whole && value > 0 ? "" : "the number of a run was expected, not " + text;
+  };
+  command.add_option("RUN", run, "The run's number (fogbench runs lists them)")
+      ->required()
+      ->check(number);
+}
+
 void add_procedure_options(CLI::App& command, ProcedureOptions& options) {
   command
       .add_option("PROCEDURE", options.procedure,
@@ -51,6 +68,10 @@ Result<daemon::Parameters> parse_parameters(const std::vector<std::string>& set)
     const std::size_t equals = assignment.find('=');
     if (equals == 0 || equals == std::string::npos) return error;
     const std::string name = assignment.substr(0, equals);
+    if (parameters.contains(name)) {
+      return Error{ErrorCode::kUsage,
+                   fmt::format("--set {}: {} is set twice, once was expected", assignment, name)};
+    }
     std::string_view rest = std::string_view(assignment).substr(equals + 1);
     std::vector<double> values;
     while (true) {

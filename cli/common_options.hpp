@@ -2,6 +2,7 @@
 // Options that several commands share.
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -16,6 +17,12 @@ namespace fogbench::cli {
 void add_store_option(CLI::App& command, std::string& store);
 /// The store as named, or the default one.
 Result<std::filesystem::path> store_path(const std::string& store);
+
+/// " --store FILE" for a command that is proposed next; empty when the default one serves.
+std::string store_argument(const std::string& store);
+
+/// RUN, the number of one run.
+void add_run_option(CLI::App& command, std::int64_t& run);
 
 /// PROCEDURE, --bench and --set name=value.
 struct ProcedureOptions {

@@ -52,8 +52,7 @@ void add_export(CLI::App& app, Action& action) {
       "  fogbench export 7 --raw -o run-7-raw.csv\n"
       "Numbers read back exactly; missing ones are empty. Column `run` holds the test.",
       [](CLI::App& command, ExportOptions& options) {
-        command.add_option("RUN", options.run, "The run's number (fogbench runs lists them)")
-            ->required();
+        add_run_option(command, options.run);
         command.add_option("-o,--output", options.output,
                            "File to write, whole or not at all (default: stdout)");
         command.add_flag("--raw", options.raw, "Every frame of the gyro instead of the points");

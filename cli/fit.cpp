@@ -9,11 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
+#include "cli/common_options.hpp"
 #include "cli/load_table.hpp"
 #include "cli/output.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "daemon/file_hash.hpp"
+#include "daemon/run_options.hpp"
 #include "drivers/clock.hpp"
 #include "model/fit.hpp"
 
@@ -79,8 +81,8 @@ void print_result(const model::FitResult& result, const FitCommandOptions& optio
     fmt::print("correlation {:+.3f}: {} with {}\n", c.value, c.a, c.b);
   }
   for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
-  fmt::print("\nWritten to {}\nNext: fogbench compare {} --model {}\n", options.output,
-             options.data.data.front(), options.output);
+  fmt::print("\nWritten to {}\nNext: fogbench compare {}{} --model {}\n", options.output,
+             options.data.data.front(), store_argument(options.data.store), options.output);
 }
 
 nlohmann::json to_json(const model::FitResult& result) {
@@ -171,13 +173,12 @@ void add_fit(CLI::App& app, Action& action) {
         command.add_option("-o,--output", options.output, "Where to write the fitted model")
             ->required();
         command.add_option("--weight-by", options.weight_by, "Column of standard deviations");
-        command
-            .add_option("--noise", options.noise,
-                        "auto, independent or coloured (needs time_s and duration_s)")
-            ->transform(CLI::CheckedTransformer(
-                std::map<std::string, Noise>{{"auto", Noise::kAuto},
-                                             {"independent", Noise::kIndependent},
-                                             {"coloured", Noise::kColoured}}));
+        daemon::add_choice_option<Noise>(
+            command, "--noise", options.noise,
+            {{"auto", Noise::kAuto},
+             {"independent", Noise::kIndependent},
+             {"coloured", Noise::kColoured}},
+            "Noise of the measurements (default: auto; coloured needs time_s and duration_s)");
         command.add_flag("--json", options.json, "One JSON document");
       },
       run_fit);

@@ -40,8 +40,7 @@ void add_show(CLI::App& app, Action& action) {
       app, action, "show", "Show one run: what made it, its results and what happened",
       "  fogbench show 7\n  fogbench show 7 --json | jq .results.sweeps",
       [](CLI::App& command, ShowOptions& options) {
-        command.add_option("RUN", options.run, "The run's number (fogbench runs lists them)")
-            ->required();
+        add_run_option(command, options.run);
         add_store_option(command, options.store);
         command.add_flag("--json", options.json, "One JSON document on stdout");
       },

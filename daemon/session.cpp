@@ -120,11 +120,12 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
     // Starts today, so that the record's dates mean something; nothing measured depends on it.
     session->clock_ = std::make_unique<drivers::VirtualClock>(drivers::SteadyClock().wall_now());
   }
+  // Before the run log, so that a scenario which cannot be simulated leaves nothing behind.
+  auto transports = simulator::simulate_bench(made.bench, made.scenario, seed, *session->clock_);
+  if (!transports) return transports.error();
   auto log = RunLog::open(store);
   if (!log) return log.error();
   session->log_ = std::move(*log);
-  auto transports = simulator::simulate_bench(made.bench, made.scenario, seed, *session->clock_);
-  if (!transports) return transports.error();
   auto bench = drivers::open_bench(made.bench, std::move(*transports), *session->clock_, person);
   if (!bench) return bench.error();
   session->bench_ = std::move(*bench);

@@ -21,7 +21,15 @@ TEST_F(FogbenchTest, UsageIsStatusTwo) {
   expect_refused(fogbench({"show", "seven"}), 2, "seven");
   expect_refused(fogbench({"runs", "--wings"}), 2, "--wings");
   expect_refused(fogbench({"dry-run", "coil-sweep", "--speed", "warp"}), 2, "warp");
-  expect_refused(fogbench({"dry-run", "coil-sweep", "--seed", "-1"}), 2, "seed");
+  for (const char* seed : {"-1", "", "1.5", "18446744073709551616"}) {
+    expect_refused(fogbench({"dry-run", "coil-sweep", "--seed", seed}), 2, "seed");
+  }
+  for (const char* run : {"0", "-1", "", "9223372036854775808"}) {
+    expect_refused(fogbench({"show", run}), 2, "number of a run");
+    expect_refused(fogbench({"export", run}), 2, "number of a run");
+  }
+  expect_refused(fogbench({"plan", "coil-sweep", "--set", "average_s=1", "--set", "average_s=2"}),
+                 2, "average_s is set twice");
   for (const char* set :
        {"average_s", "=1", "average_s=", "average_s=x", "average_s=1,,2", "average_s=nan"}) {
     expect_refused(fogbench({"plan", "coil-sweep", "--set", set}), 2, set);
@@ -54,10 +62,23 @@ TEST_F(FogbenchTest, BadFilesAreStatusThreeAndNothingIsWritten) {
     }
     expect_refused(support::run(dry_run({file})), 3, "");
   }
+  const std::string hidden =
+      folder_.file("hidden.json", R"({"noise": "navigation", "gyro": {"terms": {"biass": 1}}})")
+          .string();
+  expect_refused(support::run(dry_run({"coil-sweep", "--scenario", hidden})), 3, "biass");
   expect_refused(fogbench({"plan", "no-such"}), 3, "coil-sweep");  // names the ready ones
   expect_refused(fogbench({"plan", "coil-sweep", "--set", "wings=2"}), 3, "wings");
   expect_refused(fogbench({"plan", "coil-sweep", "--set", "levels_ut=0,900"}), 3, "900");
   EXPECT_FALSE(std::filesystem::exists(store()));
+}
+
+// Only a real process has a standard output that takes no more.
+TEST_F(FogbenchTest, AFullStandardOutputIsOneLine) {
+  const support::Process::Setup full{{}, [] { dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO); }};
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"effects"}, {"effects", "--json"}, {"effects", "bias"}}) {
+    expect_refused(fogbench(arguments, full), 4, "could not be written");
+  }
 }
 
 TEST_F(FogbenchTest, BrokenStoresAreOneLine) {

@@ -56,6 +56,10 @@ TEST_F(ModelCommandsTest, RunIsFittedByItsNumber) {
   const auto result = json(
       {"fit", "1", "--store", store(), "--model", "magnetic", "-o", path("fitted.json"), "--json"});
   EXPECT_EQ(result.at("estimates").size(), 4U);
+  const Finished words =
+      fogbench({"fit", "1", "--store", store(), "--model", "magnetic", "-o", path("fitted.json")});
+  EXPECT_NE(words.out.find("Next: fogbench compare 1 --store " + store()), std::string::npos)
+      << words.out;
 }
 
 TEST_F(ModelCommandsTest, EffectsAndAdd) {
@@ -65,6 +69,9 @@ TEST_F(ModelCommandsTest, EffectsAndAdd) {
       fogbench({"add", "magnetic_hysteresis_z", "--model", "magnetic", "-o", extended});
   EXPECT_EQ(added.status, 0) << added.err;
   EXPECT_TRUE(std::filesystem::exists(extended));
+  const auto document =
+      json({"add", "bias_step", "--model", extended, "-o", path("again.json"), "--json"});
+  EXPECT_EQ(document.at("terms"), 6);
   const std::string nothing = path("nothing.json");
   expect_refused(fogbench({"add", "magnetic_histeresis_z", "--model", "magnetic", "-o", nothing}),
                  3, "the nearest are magnetic_hysteresis_z");
