@@ -93,7 +93,7 @@ void print_text(const model::Comparison& c, const CompareOptions& options, std::
                    {"unit", "", Align::kLeft}});
   for (const model::Estimate& e : c.fit.estimates) {
     const double expanded = e.coverage_factor * e.standard_error;
-    table.add_row({e.name, fmt::format("{:.6g}", e.value),
+    table.add_row({e.name, std::isnan(e.value) ? "-" : fmt::format("{:.6g}", e.value),
                    e.held                 ? "held"
                    : std::isnan(expanded) ? "-"
                                           : fmt::format("{:.2g}", expanded),

@@ -70,6 +70,14 @@ TEST_F(FogbenchTest, CompareRefusesWhatItCannotUse) {
                  3, "field_x_ut");
 }
 
+TEST_F(FogbenchTest, CompareDashesWhatTheDataCannotDetermine) {
+  const std::string data =
+      folder_.file("flat.csv", "rate_deg_per_h,temperature_c\n1,21\n2,21\n1,21\n2,21\n").string();
+  const Finished done = fogbench({"compare", data, "--model", "paper-thermal"});
+  EXPECT_EQ(done.status, 0) << done.err;
+  EXPECT_THAT(done.out, testing::Not(HasSubstr("nan")));
+}
+
 TEST_F(FogbenchTest, AllanReadsTheNoiseOfARecord) {
   const std::string record = (folder_ / "record.csv").string();
   std::ofstream file(record);
