@@ -71,7 +71,7 @@ struct EstimateConfig {
   Celsius room{21.0};
   CelsiusPerHour heating{45.0};
   CelsiusPerHour cooling{10.0};
-  Seconds settling{1400.0};     ///< from arriving near a temperature to the start of the dwell
+  Seconds settling{1400.0};    ///< from arriving near a temperature to the start of the dwell
   Seconds compensation{15.0};  ///< nulling the ambient field
   Seconds operator_answer{60.0};
 };

@@ -4,8 +4,8 @@
 
 #include <cstdlib>
 
-#include "tests/support/temporary_folder.hpp"
 #include "tests/support/source_tree.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fogbench::daemon {
 namespace {
