@@ -204,21 +204,22 @@ std::string describe(const NoiseEstimate& estimate, bool too_few, double nu, dou
 ResidualEvidence::ResidualEvidence(double nu, double anchor) : nu_(nu), anchor_(anchor) {
   if (anchor_ == 0.0) return;
   // Below the table P is a power of its argument, above it one.
-  first_ = std::log(0.5 * nu_) - kTableSpan;
+  const double first = std::log(0.5 * nu_) - kTableSpan;
+  first_ = first + std::log(2.0 * anchor_ * anchor_);
   const auto steps = static_cast<int>(2.0 * kTableSpan / kTableStep) + 1;
   for (int i = 0; i < steps; ++i) {
-    table_.push_back(log_gamma_p(0.5 * nu_, std::exp(first_ + i * kTableStep)));
+    table_.push_back(log_gamma_p(0.5 * nu_, std::exp(first + i * kTableStep)));
   }
 }
 
 double ResidualEvidence::operator()(double residual_squares) const {
   const double rss = std::max(residual_squares, nu_ * kLeastWhite * kLeastWhite);
-  const double log_likelihood = -0.5 * nu_ * std::log(rss);
+  const double log_rss = std::log(rss);
+  const double log_likelihood = -0.5 * nu_ * log_rss;
   if (anchor_ == 0.0) return log_likelihood;
-  const double x = 0.5 * rss / (anchor_ * anchor_);
-  const double place = (std::log(x) - first_) / kTableStep;
+  const double place = (log_rss - first_) / kTableStep;
   if (place >= static_cast<double>(table_.size() - 1)) return log_likelihood;
-  if (place < 0.0) return log_likelihood + log_gamma_p(0.5 * nu_, x);
+  if (place < 0.0) return log_likelihood + log_gamma_p(0.5 * nu_, 0.5 * rss / (anchor_ * anchor_));
   const auto i = static_cast<std::size_t>(place);
   const double part = place - static_cast<double>(i);
   return log_likelihood + (1.0 - part) * table_[i] + part * table_[i + 1];

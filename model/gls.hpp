@@ -61,10 +61,11 @@ class ResidualEvidence {
  public:
   ResidualEvidence(double nu, double anchor);
   double operator()(double residual_squares) const;
+  double nu() const { return nu_; }
 
  private:
   double nu_, anchor_;
-  double first_ = 0.0;  ///< log of RSS/(2 anchor^2) where the table begins
+  double first_ = 0.0;  ///< log of RSS where the table begins
   std::vector<double> table_;
 };
 

@@ -107,8 +107,11 @@ class StateSpaceWhitener final : public Whitener {
 
   template <class Innovation>
   void advance(Eigen::MatrixXd& state, Eigen::Index i, const Innovation& innovation) const {
-    state.leftCols(terms_) *= geometry_->decay.col(i).matrix().asDiagonal();
-    state.noalias() += innovation * gain_.col(i).transpose();
+    // One pass for each state: this is the inner loop of every fit.
+    for (Eigen::Index j = 0; j < terms_; ++j) {
+      state.col(j) = geometry_->decay(j, i) * state.col(j) + gain_(j, i) * innovation;
+    }
+    state.col(terms_) += gain_(terms_, i) * innovation;
   }
 
   void filter_run(Eigen::Index first, Eigen::Index last) {
