@@ -1,0 +1,92 @@
+#pragma once
+// One forward step of a diagnosis: how much better does each candidate explain the data, when the
+// noise is estimated anew with every candidate, and how often would noise alone do as well?
+//
+//   l_k(q) = -log|L_k| - log|R_k| - nu/2 log q + log P(nu/2, q / 2A^2)     noise shape k, N integrated
+//   Lambda_c = 2 max_a [ log sum_k exp l_k(q_k - |u_kc(a)' e_k|^2) - log sum_k exp l_k(q_k) ]
+//
+// e_k is the residual whitened under shape k and cleared of the base columns, q_k = |e_k|^2, u_kc an
+// orthonormal basis of the candidate's columns treated alike. Draws from the posterior of the noise
+// (not from one plugged-in estimate) calibrate Lambda; only the scores U'E are needed for them, so
+// the cost of a draw does not depend on how a candidate was made.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "model/diagnose/library.hpp"
+#include "model/gls.hpp"
+
+namespace fogbench::model {
+
+/// The likelihood of a residual sum of squares with the white noise's size integrated out.
+class WhiteMarginal {
+ public:
+  /// nu: rows less base columns; anchor: lower bound of N, 0 for none.
+  WhiteMarginal(double nu, double anchor);
+  double operator()(double squares) const;
+
+ private:
+  double nu_, anchor_;
+  double log_from_ = 0.0, log_step_ = 1.0;
+  std::vector<double> table_;  // log P on a grid of log squares
+};
+
+/// Data made of noise, whitened under every kept shape: what candidates are calibrated on.
+struct Draws {
+  std::vector<Eigen::MatrixXf> residuals;  ///< per kept shape, rows x draws, base projected out
+  std::vector<Eigen::MatrixXf> scores;     ///< per kept shape, library columns x draws
+  Eigen::Index count = 0;
+};
+
+class Detector {
+ public:
+  /// All arguments must outlive the detector. base: rows x p, full rank.
+  Detector(const NoiseShapes& shapes, const Eigen::MatrixXd& base, const Library& library,
+           const Eigen::VectorXd& y);
+
+  Eigen::Index candidates() const { return static_cast<Eigen::Index>(library_.candidates.size()); }
+  /// Lambda of each candidate on the data; -1 where it is not testable.
+  const Eigen::VectorXd& observed() const { return observed_; }
+  /// The best point of the candidate's grid.
+  const Block& best_block(Eigen::Index candidate) const;
+  /// Every block projects to nothing on this base.
+  bool testable(Eigen::Index candidate) const;
+  /// Lambda of any columns (not of the library).
+  double lambda_of(const Eigen::MatrixXd& columns) const;
+
+  /// Noise drawn from its posterior given the base, or given the base and a candidate's best block.
+  Draws draw(Eigen::Index count, std::uint64_t seed, Eigen::Index with_candidate = -1) const;
+  /// candidates x draws; `signal` (rows) is added to every draw where it is not empty.
+  Eigen::MatrixXd lambdas(const Draws& draws, const Eigen::VectorXd& signal = {}) const;
+  /// What the candidate's best block contributes to the data, fitted: rows.
+  Eigen::VectorXd fitted_signal(Eigen::Index candidate) const;
+  struct Coefficients {
+    Eigen::VectorXd value;
+    Eigen::VectorXd standard_error;
+  };
+  /// Of the candidate's best block, under the noise that suits it best.
+  Coefficients coefficients(Eigen::Index candidate) const;
+  /// Like lambdas, but with the noise held at its null posterior: for wide bases, which would pass
+  /// structure off as noise.
+  Eigen::MatrixXd lambdas_at_null_noise(const Draws& draws) const;
+  Eigen::VectorXd observed_at_null_noise() const;
+
+ private:
+  struct View;  // one noise shape
+  std::size_t best_view(Eigen::Index candidate) const;
+  Draws data_as_draw() const;
+
+  const NoiseShapes& shapes_;
+  const Eigen::MatrixXd& base_;
+  const Library& library_;
+  const Eigen::VectorXd& y_;
+  double nu_;
+  WhiteMarginal marginal_;
+  std::vector<std::shared_ptr<const View>> views_;
+  Eigen::VectorXd observed_;
+  std::vector<std::size_t> best_block_;
+};
+
+}  // namespace fogbench::model

@@ -1,0 +1,86 @@
+#pragma once
+// What is missing in an error model, how sure that is, or that nothing is: the whole diagnosis.
+//
+//   fit the model -> is what is left more than noise? -> which effect explains it (search.hpp)
+//   -> is what is then left noise? (smooth functions of every variable, at 1 %)
+//   -> adequate | missing_effect | ambiguous | unexplained
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "config/model_file.hpp"
+#include "config/result.hpp"
+#include "model/compare.hpp"
+#include "model/diagnose/search.hpp"
+#include "model/table.hpp"
+
+namespace fogbench::model {
+
+enum class Verdict { kAdequate, kMissingEffect, kAmbiguous, kUnexplained };
+
+/// "adequate", "missing_effect", "ambiguous", "unexplained".
+std::string_view name_of(Verdict verdict);
+
+struct MissingEffect {
+  Found found;
+  std::vector<Estimate> estimates;  ///< its coefficients and inner parameters, after the last refit
+  double rms_after = 0.0;
+  double heldout_rms_after = 0.0;
+};
+
+struct LadderStep {
+  std::string added;  ///< empty: the model as it came
+  double rms = 0.0;
+  double heldout_rms = 0.0;
+};
+
+/// Structure that no effect of the catalogue explains.
+struct Unexplained {
+  double p_value = 1.0;
+  std::vector<std::string> depends_on;
+  std::string suggestion;  ///< a formula to start from, labelled as a guess; empty: none
+};
+
+struct NextMeasurement {
+  std::vector<std::string> tells_apart;
+  std::string action;
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::kAdequate;
+  double p_adequate = 1.0;  ///< of the model as it came
+  double false_alarm_rate = 0.05;
+  Table table;               ///< what was analysed: complete rows, binned where there were many
+  std::size_t rows_per_bin = 1;
+  Comparison before;         ///< the model as it came, on `table`: fit and failing regions
+  FitResult after;           ///< with the missing effects, on `table`; as before.fit if none
+  double heldout_rms = 0.0;  ///< of the model as it came
+  double noise_floor = 0.0;  ///< RMS residual that noise alone leaves with the last fit
+  NoiseCoefficients noise;   ///< estimated with the last fit
+  std::vector<MissingEffect> missing;
+  std::vector<std::vector<std::string>> ambiguous;
+  Unexplained unexplained;
+  std::vector<NotTestable> not_testable;
+  std::vector<Bound> bounds;
+  std::vector<NextMeasurement> next_measurements;
+  std::vector<LadderStep> ladder;
+  std::vector<std::string> sentences;  ///< the verdict in words, in the order to print them
+};
+
+struct DiagnoseOptions {
+  double false_alarm_rate = 0.05;
+  const Table* quiet = nullptr;  ///< a static record of the same gyro: informs the noise only
+  /// Terms of the user that take part as candidates beside the catalogue (expressions, or
+  /// catalogue effects with starting values).
+  std::vector<config::ModelTerm> candidates;
+  std::uint64_t seed = 20260101;
+  /// Called with a few words as each part of the work begins, and the share done (0 ... 1).
+  std::function<void(const std::string& part, double share)> progress;
+};
+
+/// Errors: those of fit() for the model as it came.
+Result<Diagnosis> diagnose(const Table& table, const config::ModelFile& model,
+                           const DiagnoseOptions& options);
+
+}  // namespace fogbench::model

@@ -1,0 +1,118 @@
+#include "model/diagnose/heldout.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "model/design.hpp"
+#include "model/signals.hpp"
+
+namespace fogbench::model {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kFolds = 8;
+
+struct System {
+  MatrixXd x;
+  VectorXd y;
+  std::vector<Index> complete;  // rows without a missing number
+};
+
+std::optional<System> system_of(const Signals& signals, config::ModelFile model) {
+  for (config::ModelTerm& term : model.terms) {
+    if (term.fixed) continue;
+    term.coefficient.reset();
+    term.coefficients.clear();
+  }
+  const auto design = Design::make(signals, model, false);
+  if (!design) return std::nullopt;
+  VectorXd inner(static_cast<Index>(design->parameters().size()));
+  for (Index i = 0; i < inner.size(); ++i) {
+    inner[i] = design->parameters()[static_cast<std::size_t>(i)].start.value_or(1.0);
+  }
+  System out;
+  const auto n = static_cast<Index>(signals.rows());
+  design->visit(inner, false, signals.signal(model.observable),
+                [&](std::size_t begin, Eigen::Ref<MatrixXd> rows) {
+                  if (out.y.size() == 0) {
+                    out.x.resize(n, rows.cols() - 1);
+                    out.y.resize(n);
+                  }
+                  const auto at = static_cast<Index>(begin);
+                  out.x.middleRows(at, rows.rows()) = rows.leftCols(rows.cols() - 1);
+                  out.y.segment(at, rows.rows()) = rows.rightCols(1);
+                });
+  for (Index i = 0; i < n; ++i) {
+    if (out.x.row(i).allFinite() && std::isfinite(out.y[i])) out.complete.push_back(i);
+  }
+  return out;
+}
+
+/// Windows of some rows, for the whitener.
+Windows windows_of(const Signals& signals, const std::vector<Index>& rows) {
+  Windows windows;
+  const auto n = static_cast<Index>(rows.size());
+  windows.centre_s.resize(n);
+  windows.duration_s.resize(n);
+  windows.white_floor = VectorXd::Zero(n);
+  const auto time = signals.signal("time_s");
+  const auto duration = signals.signal("duration_s");
+  std::size_t run = signals.runs().size();
+  for (Index i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(rows[static_cast<std::size_t>(i)]);
+    std::size_t its = 0;
+    while (row >= signals.runs()[its].end) ++its;
+    if (its != run) windows.run_begin.push_back(static_cast<std::size_t>(i));
+    run = its;
+    windows.centre_s[i] = time[static_cast<Index>(row)];
+    windows.duration_s[i] = duration[static_cast<Index>(row)];
+  }
+  windows.run_begin.push_back(static_cast<std::size_t>(n));
+  return windows;
+}
+
+}  // namespace
+
+double heldout_rms(const Table& table, const config::ModelFile& fitted,
+                   const NoiseCoefficients& noise) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const Signals signals(table, fitted.reference_temperature_c);
+  const auto system = system_of(signals, fitted);
+  if (!system) return kUnknown;
+  const auto n = system->complete.size();
+  const auto p = static_cast<std::size_t>(system->x.cols());
+  const std::size_t folds = std::min(kFolds, n);
+  if (n < p + 2 || folds < 2) return kUnknown;
+
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    std::vector<Index> kept, left;
+    for (std::size_t i = 0; i < n; ++i) {
+      (i * folds / n == fold ? left : kept).push_back(system->complete[i]);
+    }
+    if (kept.size() < p) continue;
+    MatrixXd x = system->x(kept, Eigen::all);
+    VectorXd y = system->y(kept);
+    if (signals.available("time_s") && noise.angle_random_walk_deg_per_sqrt_h > 0.0) {
+      if (const auto whitener = make_whitener(windows_of(signals, kept), noise)) {
+        x = (*whitener)->whiten(x);
+        y = (*whitener)->whiten(y);
+      }
+    }
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(x);
+    if (qr.rank() < x.cols()) continue;  // the block held something that nothing else shows
+    const VectorXd beta = qr.solve(y);
+    squares += (system->y(left) - system->x(left, Eigen::all) * beta).squaredNorm();
+    count += left.size();
+  }
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : kUnknown;
+}
+
+}  // namespace fogbench::model
