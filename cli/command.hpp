@@ -45,6 +45,7 @@ void add_fit(CLI::App& app, Action& action);
 void add_add(CLI::App& app, Action& action);
 void add_compensate(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
+void add_diagnose(CLI::App& app, Action& action);
 void add_allan(CLI::App& app, Action& action);
 
 }  // namespace fogbench::cli

@@ -31,6 +31,7 @@ void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_add(app, action);
   fogbench::cli::add_compensate(app, action);
   fogbench::cli::add_compare(app, action);
+  fogbench::cli::add_diagnose(app, action);
   fogbench::cli::add_allan(app, action);
 }
 

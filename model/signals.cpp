@@ -107,7 +107,7 @@ bool Signals::has_numbers(std::string_view name) const {
 
 bool Signals::available(std::string_view name) const {
   if (has_numbers(name)) return true;
-  if (name == "duration_s") return true;
+  if (name == "duration_s" || name == "run_index") return true;
   if (name == "time_since_start_s") return has_numbers("time_s");
   if (name == "temperature_rate_c_per_h") {
     return has_numbers("time_s") && has_numbers("temperature_c");
@@ -173,6 +173,7 @@ Signals::Values Signals::derive(std::string_view name) const {
   }
   if (name == "coil_heat") return coil_heat();
   if (name == "time_since_start_s") return time_since_start();
+  if (name == "run_index") return run_index();
   return Values(table_.rows(), name == "duration_s" ? 0.0 : kMissing);
 }
 
@@ -238,6 +239,24 @@ Signals::Values Signals::time_since_start() const {
     }
   }
   return since;
+}
+
+Signals::Values Signals::run_index() const {
+  const TextColumn& run = table_.run();
+  std::vector<std::pair<std::size_t, std::string>> names;
+  for (const RunRange& range : runs()) {
+    const std::string& name = run.at(table_row(range.begin));
+    names.emplace_back(name.size(), name);
+  }
+  Values index(table_.rows());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto before = std::count_if(names.begin(), names.end(),
+                                      [&](const auto& name) { return name < names[i]; });
+    const RunRange& range = runs()[i];
+    std::fill(index.begin() + static_cast<std::ptrdiff_t>(range.begin),
+              index.begin() + static_cast<std::ptrdiff_t>(range.end), static_cast<double>(before));
+  }
+  return index;
 }
 
 }  // namespace fogbench::model

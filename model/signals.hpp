@@ -11,6 +11,7 @@
 //   coil_heat                 sum of the squared fields present, (100 uT)^2; without any field,
 //                             coil_current_a squared, A^2
 //   time_since_start_s        time_s minus that of the run's first row
+//   run_index                 0 for the first run by name ("2" before "10"), 1 for the next
 
 #include <Eigen/Core>
 #include <map>
@@ -72,6 +73,7 @@ class Signals {
   Values slope_per_hour(std::string_view name) const;
   Values coil_heat() const;
   Values time_since_start() const;
+  Values run_index() const;
   bool has_numbers(std::string_view name) const;
   View whole(std::string_view name) const;
 

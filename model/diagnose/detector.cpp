@@ -3,13 +3,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <atomic>
-#include <boost/math/special_functions/gamma.hpp>
 #include <boost/random/chi_squared_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <thread>
 
 namespace fogbench::model {
@@ -42,16 +42,6 @@ void in_parallel(std::size_t items, Work work) {
   if (other.joinable()) other.join();
 }
 
-double log_gamma_p(double a, double x) {
-  if (x > a) return std::log(boost::math::gamma_p(a, x));
-  double term = 1.0, sum = 1.0;
-  for (int n = 1; n < 10000 && term > 1e-17 * sum; ++n) {
-    term *= x / (a + n);
-    sum += term;
-  }
-  return a * std::log(x) - x - std::lgamma(a + 1.0) + std::log(sum);
-}
-
 double log_sum_exp(const std::vector<double>& values) {
   const double top = *std::max_element(values.begin(), values.end());
   double sum = 0.0;
@@ -60,35 +50,6 @@ double log_sum_exp(const std::vector<double>& values) {
 }
 
 }  // namespace
-
-WhiteMarginal::WhiteMarginal(double nu, double anchor) : nu_(nu), anchor_(anchor) {
-  if (anchor_ <= 0.0) return;
-  constexpr int kPoints = 4096;
-  // q / A^2 from far below nu (the anchor then excludes the shape) to far above (it is idle).
-  log_from_ = std::log(1e-3 * nu * anchor * anchor);
-  const double log_to = std::log(1e3 * nu * anchor * anchor);
-  log_step_ = (log_to - log_from_) / (kPoints - 1);
-  table_.resize(kPoints);
-  for (int i = 0; i < kPoints; ++i) {
-    const double q = std::exp(log_from_ + i * log_step_);
-    table_[static_cast<std::size_t>(i)] = log_gamma_p(0.5 * nu, 0.5 * q / (anchor * anchor));
-  }
-}
-
-double WhiteMarginal::operator()(double squares) const {
-  const double log_q = std::log(std::max(squares, kLeastSquares));
-  double value = -0.5 * nu_ * log_q;
-  if (table_.empty()) return value;
-  const double place = (log_q - log_from_) / log_step_;
-  if (place <= 0.0) {
-    // P(a, x) ~ x^a: beyond the grid the two powers cancel and the likelihood is flat.
-    return value + table_.front() + 0.5 * nu_ * (log_q - log_from_);
-  }
-  const auto i = static_cast<std::size_t>(place);
-  if (i + 1 >= table_.size()) return value;
-  const double t = place - static_cast<double>(i);
-  return value + (1.0 - t) * table_[i] + t * table_[i + 1];
-}
 
 struct Detector::View {
   std::size_t shape = 0;
@@ -143,11 +104,15 @@ Detector::Detector(const NoiseShapes& shapes, const MatrixXd& base, const Librar
       library_(library),
       y_(y),
       nu_(static_cast<double>(base.rows() - base.cols())),
-      marginal_(nu_, shapes.anchor()) {
+      evidence_(nu_, shapes.anchor()) {
   const std::size_t blocks = count_blocks(library);
   std::vector<std::shared_ptr<View>> all(shapes.size());
   std::vector<double> null_likelihood(shapes.size()), best_likelihood(shapes.size());
 
+  // The library whitened under every shape would fill the memory: a shape that is hopeless beside
+  // those seen so far is hopeless for good.
+  std::mutex seen;
+  double best_null = kMinusInfinity, best_with = kMinusInfinity;
   in_parallel(shapes.size(), [&](std::size_t k) {
     auto view = std::make_shared<View>();
     view->shape = k;
@@ -155,7 +120,7 @@ Detector::Detector(const NoiseShapes& shapes, const MatrixXd& base, const Librar
     const MatrixXd wx = view->whitener->whiten(base_);
     const Eigen::HouseholderQR<MatrixXd> qr(wx);
     view->q = qr.householderQ() * MatrixXd::Identity(wx.rows(), wx.cols());
-    view->log_prior = -0.5 * view->whitener->log_determinant() -
+    view->log_prior = shapes.log_prior(k) - 0.5 * view->whitener->log_determinant() -
                       qr.matrixQR().diagonal().cwiseAbs().array().log().sum();
     view->residual = view->project(view->whitener->whiten(y_));
     view->squares = view->residual.squaredNorm();
@@ -174,9 +139,18 @@ Detector::Detector(const NoiseShapes& shapes, const MatrixXd& base, const Librar
         most = std::max(most, (part.transpose() * view->residual).squaredNorm());
       }
     }
+    null_likelihood[k] = view->log_prior + evidence_(view->squares);
+    best_likelihood[k] = view->log_prior + evidence_(view->squares - most);
+    {
+      const std::lock_guard lock(seen);
+      best_null = std::max(best_null, null_likelihood[k]);
+      best_with = std::max(best_with, best_likelihood[k]);
+      if (std::max(null_likelihood[k] - best_null, best_likelihood[k] - best_with) <
+          std::log(kLeastShape)) {
+        return;
+      }
+    }
     view->u = z.cast<float>();
-    null_likelihood[k] = view->log_prior + marginal_(view->squares);
-    best_likelihood[k] = view->log_prior + marginal_(view->squares - most);
     all[k] = std::move(view);
   });
 
@@ -197,7 +171,7 @@ Detector::Detector(const NoiseShapes& shapes, const MatrixXd& base, const Librar
   observed_ = VectorXd::Constant(candidates(), -1.0);
   std::vector<double> base_likelihood(views_.size()), with(views_.size());
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    base_likelihood[v] = views_[v]->log_prior + marginal_(views_[v]->squares);
+    base_likelihood[v] = views_[v]->log_prior + evidence_(views_[v]->squares);
   }
   const double base_log = log_sum_exp(base_likelihood);
   std::size_t block_index = 0;
@@ -209,7 +183,7 @@ Detector::Detector(const NoiseShapes& shapes, const MatrixXd& base, const Librar
         alive = alive && views_[v]->alive[block_index];
         const double gain = data.scores[v].middleRows(blocks_of[i].first, blocks_of[i].width)
                                 .cast<double>().squaredNorm();
-        with[v] = views_[v]->log_prior + marginal_(views_[v]->squares - gain);
+        with[v] = views_[v]->log_prior + evidence_(views_[v]->squares - gain);
       }
       if (!alive) continue;
       const double lambda = 2.0 * (log_sum_exp(with) - base_log);
@@ -237,9 +211,9 @@ double Detector::lambda_of(const MatrixXd& columns) const {
     const VectorXd lengths = z.colwise().norm();
     z = view.project(std::move(z));
     if (!orthonormalise(z, lengths)) return -1.0;
-    null[v] = view.log_prior + marginal_(view.squares);
+    null[v] = view.log_prior + evidence_(view.squares);
     with[v] = view.log_prior +
-              marginal_(view.squares - (z.transpose() * view.residual).squaredNorm());
+              evidence_(view.squares - (z.transpose() * view.residual).squaredNorm());
   }
   return 2.0 * (log_sum_exp(with) - log_sum_exp(null));
 }
@@ -255,7 +229,7 @@ Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate) cons
                      views_[v]->residual).squaredNorm();
     }
     squares[v] = std::max(squares[v], kLeastSquares);
-    weight[v] = views_[v]->log_prior + marginal_(squares[v]);
+    weight[v] = views_[v]->log_prior + evidence_(squares[v]);
   }
   const double total = log_sum_exp(weight);
   for (double& w : weight) w = std::exp(w - total);
@@ -320,7 +294,7 @@ MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal) const {
     const auto b = static_cast<Index>(draw);
     std::vector<double> with(n_views);
     for (std::size_t v = 0; v < n_views; ++v) {
-      with[v] = views_[v]->log_prior + marginal_(squares(static_cast<Index>(v), b));
+      with[v] = views_[v]->log_prior + evidence_(squares(static_cast<Index>(v), b));
     }
     const double null_log = log_sum_exp(with);
     std::size_t block_index = 0;
@@ -335,7 +309,7 @@ MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal) const {
                                  (shift[v].size() > 0 ? static_cast<double>(shift[v][j]) : 0.0);
             gain += score * score;
           }
-          with[v] = views_[v]->log_prior + marginal_(squares(static_cast<Index>(v), b) - gain);
+          with[v] = views_[v]->log_prior + evidence_(squares(static_cast<Index>(v), b) - gain);
         }
         out(c, b) = std::max(out(c, b), 2.0 * (log_sum_exp(with) - null_log));
       }
@@ -351,7 +325,7 @@ std::size_t Detector::best_view(Index candidate) const {
   for (std::size_t v = 0; v < views_.size(); ++v) {
     const double gain = (views_[v]->u.middleCols(b.first, b.width).transpose().cast<double>() *
                          views_[v]->residual).squaredNorm();
-    const double l = views_[v]->log_prior + marginal_(views_[v]->squares - gain);
+    const double l = views_[v]->log_prior + evidence_(views_[v]->squares - gain);
     if (l > top) {
       top = l;
       best = v;
@@ -379,7 +353,7 @@ Detector::Coefficients Detector::coefficients(Index candidate) const {
 MatrixXd Detector::lambdas_at_null_noise(const Draws& draws) const {
   std::vector<double> weight(views_.size());
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    weight[v] = views_[v]->log_prior + marginal_(views_[v]->squares);
+    weight[v] = views_[v]->log_prior + evidence_(views_[v]->squares);
   }
   const double total = log_sum_exp(weight);
   MatrixXd out = MatrixXd::Zero(candidates(), draws.count);

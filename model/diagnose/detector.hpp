@@ -2,7 +2,7 @@
 // One forward step of a diagnosis: how much better does each candidate explain the data, when the
 // noise is estimated anew with every candidate, and how often would noise alone do as well?
 //
-//   l_k(q) = -log|L_k| - log|R_k| - nu/2 log q + log P(nu/2, q / 2A^2)     noise shape k, N integrated
+//   l_k(q) = log prior_k - log|L_k| - log|R_k| + log evidence(q)       noise shape k, N integrated
 //   Lambda_c = 2 max_a [ log sum_k exp l_k(q_k - |u_kc(a)' e_k|^2) - log sum_k exp l_k(q_k) ]
 //
 // e_k is the residual whitened under shape k and cleared of the base columns, q_k = |e_k|^2, u_kc an
@@ -19,19 +19,6 @@
 #include "model/gls.hpp"
 
 namespace fogbench::model {
-
-/// The likelihood of a residual sum of squares with the white noise's size integrated out.
-class WhiteMarginal {
- public:
-  /// nu: rows less base columns; anchor: lower bound of N, 0 for none.
-  WhiteMarginal(double nu, double anchor);
-  double operator()(double squares) const;
-
- private:
-  double nu_, anchor_;
-  double log_from_ = 0.0, log_step_ = 1.0;
-  std::vector<double> table_;  // log P on a grid of log squares
-};
 
 /// Data made of noise, whitened under every kept shape: what candidates are calibrated on.
 struct Draws {
@@ -83,7 +70,7 @@ class Detector {
   const Library& library_;
   const Eigen::VectorXd& y_;
   double nu_;
-  WhiteMarginal marginal_;
+  ResidualEvidence evidence_;
   std::vector<std::shared_ptr<const View>> views_;
   Eigen::VectorXd observed_;
   std::vector<std::size_t> best_block_;

@@ -17,13 +17,15 @@
 
 namespace fogbench::model {
 
-enum class Verdict { kAdequate, kMissingEffect, kAmbiguous, kUnexplained };
+enum class Verdict { kNothingMissing, kMissingEffect, kAmbiguous, kUnexplained };
 
 /// "adequate", "missing_effect", "ambiguous", "unexplained".
 std::string_view name_of(Verdict verdict);
 
 struct MissingEffect {
   Found found;
+  std::vector<std::string> terms;   ///< what it adds to the model: itself, but for changes between runs
+  std::string inner_name;  ///< of the estimate that is its inner parameter; empty: none
   std::vector<Estimate> estimates;  ///< its coefficients and inner parameters, after the last refit
   double rms_after = 0.0;
   double heldout_rms_after = 0.0;
@@ -48,7 +50,7 @@ struct NextMeasurement {
 };
 
 struct Diagnosis {
-  Verdict verdict = Verdict::kAdequate;
+  Verdict verdict = Verdict::kNothingMissing;
   double p_adequate = 1.0;  ///< of the model as it came
   double false_alarm_rate = 0.05;
   Table table;               ///< what was analysed: complete rows, binned where there were many

@@ -54,32 +54,26 @@ std::optional<System> system_of(const Signals& signals, config::ModelFile model)
   return out;
 }
 
-/// Windows of some rows, for the whitener.
-Windows windows_of(const Signals& signals, const std::vector<Index>& rows) {
-  Windows windows;
-  const auto n = static_cast<Index>(rows.size());
-  windows.centre_s.resize(n);
-  windows.duration_s.resize(n);
-  windows.white_floor = VectorXd::Zero(n);
-  const auto time = signals.signal("time_s");
-  const auto duration = signals.signal("duration_s");
-  std::size_t run = signals.runs().size();
-  for (Index i = 0; i < n; ++i) {
-    const auto row = static_cast<std::size_t>(rows[static_cast<std::size_t>(i)]);
+/// The windows of some rows.
+Windows windows_at(const Windows& all, const std::vector<Index>& rows) {
+  Windows out;
+  out.centre_s = all.centre_s(rows);
+  out.duration_s = all.duration_s(rows);
+  out.white_floor = all.white_floor(rows);
+  std::size_t run = all.run_begin.size();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     std::size_t its = 0;
-    while (row >= signals.runs()[its].end) ++its;
-    if (its != run) windows.run_begin.push_back(static_cast<std::size_t>(i));
+    while (static_cast<std::size_t>(rows[i]) >= all.run_begin[its + 1]) ++its;
+    if (its != run) out.run_begin.push_back(i);
     run = its;
-    windows.centre_s[i] = time[static_cast<Index>(row)];
-    windows.duration_s[i] = duration[static_cast<Index>(row)];
   }
-  windows.run_begin.push_back(static_cast<std::size_t>(n));
-  return windows;
+  out.run_begin.push_back(rows.size());
+  return out;
 }
 
 }  // namespace
 
-double heldout_rms(const Table& table, const config::ModelFile& fitted,
+double heldout_rms(const Table& table, const Windows& windows, const config::ModelFile& fitted,
                    const NoiseCoefficients& noise) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const Signals signals(table, fitted.reference_temperature_c);
@@ -100,8 +94,8 @@ double heldout_rms(const Table& table, const config::ModelFile& fitted,
     if (kept.size() < p) continue;
     MatrixXd x = system->x(kept, Eigen::all);
     VectorXd y = system->y(kept);
-    if (signals.available("time_s") && noise.angle_random_walk_deg_per_sqrt_h > 0.0) {
-      if (const auto whitener = make_whitener(windows_of(signals, kept), noise)) {
+    if (noise.angle_random_walk_deg_per_sqrt_h > 0.0) {
+      if (const auto whitener = make_whitener(windows_at(windows, kept), noise)) {
         x = (*whitener)->whiten(x);
         y = (*whitener)->whiten(y);
       }

@@ -10,7 +10,8 @@ namespace fogbench::model {
 /// of neighbouring rows are left out in turn, the coefficients fitted to the others (inner
 /// parameters as `fitted` has them, weighted by `noise`), and the block predicted by the model
 /// alone, without interpolating the noise. NaN when the rows do not suffice.
-double heldout_rms(const Table& table, const config::ModelFile& fitted,
+/// `windows`: of the table's rows, which are in order and complete.
+double heldout_rms(const Table& table, const Windows& windows, const config::ModelFile& fitted,
                    const NoiseCoefficients& noise);
 
 }  // namespace fogbench::model

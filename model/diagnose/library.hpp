@@ -1,13 +1,17 @@
 #pragma once
 // What a diagnosis tries: every catalogue effect that the table can show, on a grid of its inner
-// parameter, and beside them shapes that no effect of the catalogue has. Without those shadows an
-// effect from outside the catalogue would be named confidently and wrongly.
+// parameter, the user's own terms, changes between runs, and beside them shapes that no effect of
+// the catalogue has (shadows). Without the shadows an effect from outside the catalogue would be
+// named confidently and wrongly.
 
 #include <Eigen/Core>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "config/model_file.hpp"
+#include "model/diagnose/working_table.hpp"
 #include "model/effect.hpp"
 #include "model/signals.hpp"
 
@@ -17,15 +21,27 @@ namespace fogbench::model {
 struct Block {
   Eigen::Index first = 0;
   Eigen::Index width = 1;
-  std::vector<double> inner;
+  double inner = 0.0;
 };
 
 struct Candidate {
+  enum class Kind { kEffect, kShadow };
+
   std::string name;
-  const Effect* effect = nullptr;  ///< null for shadows and for a user's expression
-  bool shadow = false;
+  Kind kind = Kind::kShadow;
+  std::vector<config::ModelTerm> terms;  ///< what would be added to the model; shadows: none
+  std::vector<std::string> units;        ///< of the coefficients
+  /// The gridded inner parameter; nothing: there is none.
+  std::optional<InnerParameter> parameter;
+  std::string parameter_name;  ///< of a user's term; catalogue effects name theirs in `parameter`
+  /// The columns at a value of the inner parameter, rows of WorkingTable. Shadows have none.
+  std::function<Eigen::MatrixXd(double)> columns;
   bool slow = false;  ///< acts on the scale of the whole run: a random walk may look like it
   std::vector<Block> blocks;
+
+  bool shadow() const { return kind == Kind::kShadow; }
+  /// The inner parameter is an instant: its likelihood is a staircase, without a tangent.
+  bool instant() const { return parameter && parameter->name == "t0"; }
 };
 
 struct NotTestable {
@@ -35,20 +51,24 @@ struct NotTestable {
 
 struct Library {
   std::vector<Candidate> candidates;
-  Eigen::MatrixXd columns;  ///< one row per table row, finite
+  Eigen::MatrixXd columns;  ///< one row per row of WorkingTable, finite
   std::vector<NotTestable> not_testable;
 };
 
-/// Effects that stand in `model` already are left out; effects whose signals are missing or never
-/// excited are listed with the reason.
-Library make_library(const Signals& signals, const config::ModelFile& model);
+/// What libraries are made from. All must outlive the library.
+struct LibrarySource {
+  const WorkingTable& table;
+  const Signals& signals;  ///< of table.fine()
+  const config::ModelFile& model;
+  const std::vector<config::ModelTerm>& users_terms;
+};
+
+/// Effects that stand in the model already are left out; effects whose signals are missing or never
+/// excited are listed with the reason. Errors: kBadInput: a user's term that cannot be evaluated.
+Result<Library> make_library(const LibrarySource& source);
 
 /// Smooth functions of each variable that moves, in blocks: what an adequate model leaves flat.
 /// Candidate names say the variables ("field_z_ut", "temperature_c x time_s").
-Library make_smooth_library(const Signals& signals);
-
-/// The effect's columns with missing entries (signal not recorded in these rows) as zero.
-Eigen::MatrixXd finite_regressor(const Effect& effect, const Signals& signals,
-                                 std::span<const double> inner);
+Library make_smooth_library(const LibrarySource& source);
 
 }  // namespace fogbench::model

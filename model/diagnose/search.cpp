@@ -1,11 +1,10 @@
 #include "model/diagnose/search.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <memory>
 
-#include "model/diagnose/calibration.hpp"
+#include "model/diagnose/stage.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -14,25 +13,22 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kNullDraws = 499;
-constexpr Index kNullDrawsManyRows = 199;
-constexpr Index kManyRows = 700;
-constexpr Index kRivalDraws = 299;
 // A rival is dropped when its own world produces the leader's lead in less than this share of
 // draws; a shadow convicts the leader below kOutside.
 constexpr double kRivalKept = 0.05;
 constexpr double kOutside = 0.01;
-// Rivals further behind than this in Lambda are not simulated: exp(-20) of the leader's likelihood.
+// Rivals further behind than this are not simulated: exp(-20) of the leader's likelihood.
 constexpr double kHopeless = 40.0;
 // A slow effect is told from a random walk only below this p-value.
 constexpr double kBeyondWalk = 2e-3;
 // An effect may take this many further values of its inner parameter before what is left counts as
 // something else.
 constexpr std::size_t kMostShapes = 3;
-// Backward check: an added effect stays when dropping it is refuted at this level.
+// An added effect stays when dropping it is refuted at this level.
 constexpr double kStays = 0.02;
-
-Index draws_for(Index rows) { return rows > kManyRows ? kNullDrawsManyRows : kNullDraws; }
+// The model needs this many rows beyond its terms, or nothing can be said of noise or structure.
+constexpr Index kFewestFreeRows = 5;
+constexpr int kMostChanges = 8;
 
 MatrixXd joined(const MatrixXd& a, const MatrixXd& b) {
   MatrixXd out(a.rows(), a.cols() + b.cols());
@@ -40,217 +36,176 @@ MatrixXd joined(const MatrixXd& a, const MatrixXd& b) {
   return out;
 }
 
-MatrixXd base_with(const SearchInput& input, const std::vector<Found>& found,
-                   const Found* except = nullptr) {
-  MatrixXd base = input.base;
-  for (const Found& f : found) {
-    if (&f != except) base = joined(base, columns_of(f, input.signals));
+/// The columns that a found effect adds: its own, the inner parameter's tangent, further shapes.
+MatrixXd columns_of(const Found& found, const Candidate& candidate) {
+  MatrixXd out = candidate.columns(found.inner);
+  if (candidate.parameter && !candidate.instant()) {
+    const double step = 1e-3 * std::abs(found.inner);
+    out = joined(out, (candidate.columns(found.inner + step) -
+                       candidate.columns(found.inner - step)) / (2.0 * step));
   }
-  return full_rank(base);
-}
-
-Library only(const Library& library, const std::string& name) {
-  Library out;
-  for (const Candidate& c : library.candidates) {
-    if (c.name != name) continue;
-    Candidate copy = c;
-    Index width = 0;
-    for (const Block& b : c.blocks) width += b.width;
-    out.columns.resize(library.columns.rows(), width);
-    Index at = 0;
-    for (Block& b : copy.blocks) {
-      out.columns.middleCols(at, b.width) = library.columns.middleCols(b.first, b.width);
-      b.first = at;
-      at += b.width;
-    }
-    out.candidates.push_back(std::move(copy));
-  }
+  for (const double more : found.more_inner) out = joined(out, candidate.columns(more));
   return out;
 }
 
-/// Narrows the inner parameter around the grid's best point by golden section on Lambda.
-void refine(Found& found, const Detector& detector, const Candidate& candidate,
-            const Signals& signals) {
-  if (found.inner.empty()) return;
-  const auto& blocks = candidate.blocks;
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (blocks[i].inner == found.inner) at = i;
-  }
-  found.inner_at_edge = at == 0 || at + 1 == blocks.size();
-  if (found.effect->info().parameters.front().name == "t0") {
-    found.inner_at_edge = false;
-    return;  // the likelihood of an instant is a staircase: the grid is its resolution
-  }
-  double low = blocks[at > 0 ? at - 1 : at].inner.front();
-  double high = blocks[at + 1 < blocks.size() ? at + 1 : at].inner.front();
-  const auto lambda = [&](double value) {
-    return detector.lambda_of(finite_regressor(*found.effect, signals, std::vector{value}));
-  };
-  constexpr double kGolden = 0.381966;
-  constexpr int kRounds = 12;
-  double inside = found.inner.front(), best = lambda(inside);
-  for (int i = 0; i < kRounds && high > low; ++i) {
-    const double trial = high - inside > inside - low ? inside + kGolden * (high - inside)
-                                                      : inside - kGolden * (inside - low);
-    const double value = lambda(trial);
-    if (value > best) {
-      (trial > inside ? low : high) = inside;
-      inside = trial;
-      best = value;
-    } else {
-      (trial > inside ? high : low) = trial;
+class Search {
+ public:
+  Search(const SearchInput& input, const SearchOptions& options)
+      : input_(input), options_(options) {}
+
+  SearchResult run() {
+    while (found().size() < options_.most_effects && step()) {
     }
-  }
-  found.inner = {inside};
-}
-
-struct Step {
-  bool significant = false;
-  double p_value = 1.0;
-  Found found;
-  std::string name;
-  std::string outside_shape;
-  double p_outside = 1.0;
-};
-
-/// Shares of the leader and its rivals by likelihood, each on its own noise scale.
-void set_probabilities(Found& leader, std::vector<std::pair<double, std::string>> behind) {
-  double total = 1.0;
-  for (const auto& [lag, name] : behind) total += std::exp(-0.5 * lag);
-  leader.probability = 1.0 / total;
-  std::sort(behind.begin(), behind.end());
-  for (const auto& [lag, name] : behind) {
-    leader.rivals.push_back({name, std::exp(-0.5 * lag) / total});
-  }
-}
-
-Step forward_step(const SearchInput& input, const Library& library, const MatrixXd& base,
-                  double level, std::uint64_t seed, std::vector<Bound>* bounds) {
-  const Detector detector(input.shapes, base, library, input.y);
-  Calibration calibration(detector.lambdas(detector.draw(draws_for(input.y.size()), seed)));
-  const VectorXd lead = calibration.lead(detector.observed());
-
-  std::vector<Index> effects, shadows;
-  for (Index c = 0; c < detector.candidates(); ++c) {
-    if (!detector.testable(c)) continue;
-    (library.candidates[static_cast<std::size_t>(c)].shadow ? shadows : effects).push_back(c);
-  }
-  Step step;
-  if (effects.empty()) return step;
-  const Index best = *std::max_element(effects.begin(), effects.end(), [&](Index a, Index b) {
-    return lead[a] < lead[b];
-  });
-  step.p_value = calibration.p_value(lead[best], effects);
-  step.significant = step.p_value <= level;
-  if (!step.significant) {
-    for (const Index c : effects) {
-      const auto& candidate = library.candidates[static_cast<std::size_t>(c)];
-      if (bounds == nullptr || candidate.effect == nullptr) continue;
-      const auto coefficient = detector.coefficients(c);
-      bounds->push_back({candidate.name,
-                         (coefficient.value.cwiseAbs() + 1.96 * coefficient.standard_error).maxCoeff(),
-                         std::string(candidate.effect->info().units.front())});
+    // Each verdict rests on the other effects; a change starts the round again, a few times at most.
+    int changes = 0;
+    for (std::size_t i = 0; i < found().size();) {
+      i = judge(i, changes < kMostChanges) ? i + 1 : 0;
+      changes += i == 0 ? 1 : 0;
     }
-    return step;
+    return std::move(result_);
   }
 
-  const auto& leader = library.candidates[static_cast<std::size_t>(best)];
-  step.name = leader.name;
-  step.found.effect = leader.effect;
-  step.found.inner = detector.best_block(best).inner;
-  step.found.p_value = step.p_value;
+ private:
+  std::vector<Found>& found() { return result_.found; }
 
-  const Draws noise = detector.draw(kRivalDraws, seed + 1, best);
-  // P(another candidate leads `world` by at least `lag` in the world where `world` is the truth).
-  const auto plausible = [&](Index world, double lag, const std::vector<Index>& others) {
-    const MatrixXd leads = calibration.lead(detector.lambdas(noise, detector.fitted_signal(world)));
-    Index reached = 0;
-    for (Index b = 0; b < leads.cols(); ++b) {
-      double top = leads(world, b);
-      for (const Index c : others) top = std::max(top, leads(c, b));
-      reached += top - leads(world, b) >= lag ? 1 : 0;
+  /// The state with all found effects but one in the base. The one with none of them is kept.
+  Stage& stage_without(const Found* except) {
+    const bool bare = found().size() == (except != nullptr ? 1u : 0u);
+    if (bare && bare_) return *bare_;
+    auto stage = std::make_unique<Stage>(input_, base_with(input_, found(), except), options_.seed);
+    auto& kept = bare ? bare_ : other_;
+    kept = std::move(stage);
+    return *kept;
+  }
+
+  /// Adds one effect, or a further shape to one that is there; false at the end.
+  bool step() {
+    if (input_.y.size() - base_with(input_, found()).cols() < kFewestFreeRows) return false;
+    Stage& stage = stage_without(nullptr);
+    if (stage.effects().empty()) return false;
+    const Index best = stage.best(stage.effects());
+    const double p = stage.p_value(best);
+    result_.p_of_step.push_back(p);
+    if (p > (found().empty() ? options_.first_level : options_.later_level)) {
+      result_.bounds = stage.bounds();
+      return false;
     }
-    return static_cast<double>(reached) / static_cast<double>(leads.cols());
-  };
-
-  std::vector<std::pair<double, std::string>> behind;
-  for (const Index c : effects) {
-    const double lag = lead[best] - lead[c];
-    if (c == best || lag > kHopeless) continue;
-    if (plausible(c, lag, effects) > kRivalKept) {
-      behind.emplace_back(std::max(lag, 0.0), library.candidates[static_cast<std::size_t>(c)].name);
-    }
-  }
-  if (leader.slow && step.p_value > kBeyondWalk) {
-    behind.emplace_back(0.0, "random_walk");
-  }
-  set_probabilities(step.found, std::move(behind));
-
-  const auto shadow = std::max_element(shadows.begin(), shadows.end(), [&](Index a, Index b) {
-    return lead[a] < lead[b];
-  });
-  if (shadow != shadows.end()) {
-    const double ahead = lead[*shadow] - lead[best];
-    const std::string& shape = library.candidates[static_cast<std::size_t>(*shadow)].name;
-    const double p = ahead > 0.0 ? plausible(best, ahead, shadows) : 1.0;
-    if (p < kOutside) {
-      step.outside_shape = shape;
-      step.p_outside = p;
-    } else if (-ahead < kHopeless &&
-               (ahead > 0.0 || plausible(*shadow, -ahead, effects) > kRivalKept)) {
-      step.found.or_shape = shape;
-    }
-  }
-  if (leader.effect != nullptr) refine(step.found, detector, leader, input.signals);
-  return step;
-}
-
-/// Each found effect's inner parameter again, with the others in the base.
-void refine_all(const SearchInput& input, const Library& library, std::vector<Found>& found) {
-  for (Found& f : found) {
-    if (f.inner.empty() || f.effect == nullptr) continue;
-    const MatrixXd base = base_with(input, found, &f);
-    const Library own = only(library, std::string(f.effect->info().id));
-    const Detector detector(input.shapes, base, own, input.y);
-    if (!detector.testable(0)) continue;
-    f.inner = detector.best_block(0).inner;
-    refine(f, detector, own.candidates.front(), input.signals);
-  }
-}
-
-/// Drops added effects that the later ones have made superfluous; true when one was dropped.
-bool drop_superfluous(const SearchInput& input, const Library& library, std::vector<Found>& found,
-                      std::uint64_t seed) {
-  for (std::size_t i = 0; i + 1 < found.size(); ++i) {
-    const MatrixXd base = base_with(input, found, &found[i]);
-    const Library own = only(library, std::string(found[i].effect->info().id));
-    const Detector detector(input.shapes, base, own, input.y);
-    if (detector.testable(0)) {
-      const Calibration calibration(detector.lambdas(detector.draw(kNullDrawsManyRows, seed)));
-      const double lead = calibration.lead(detector.observed())[0];
-      if (calibration.p_value(lead, {0}) <= kStays) continue;
-    }
-    found.erase(found.begin() + static_cast<std::ptrdiff_t>(i));
+    if (absorb(stage, best)) return true;
+    const auto candidate = static_cast<std::size_t>(best);
+    if (is_found(candidate)) return false;
+    found().push_back({.candidate = candidate,
+                       .effect = stage.candidate(best).name,
+                       .inner = stage.refined(best),
+                       .p_value = p,
+                       .inner_at_edge = stage.at_edge(best)});
     return true;
   }
-  return false;
-}
+
+  bool is_found(std::size_t candidate) {
+    return std::any_of(found().begin(), found().end(),
+                       [&](const Found& f) { return f.candidate == candidate; });
+  }
+
+  /// Gives the rest to an effect that was found already, with another value of its inner parameter,
+  /// where that explains the rest as well as the leader does.
+  bool absorb(Stage& stage, Index leader) {
+    for (Found& f : found()) {
+      const auto own = static_cast<Index>(f.candidate);
+      const Candidate& candidate = stage.candidate(own);
+      if (!candidate.parameter || f.more_inner.size() >= kMostShapes) continue;
+      if (!stage.detector().testable(own)) continue;
+      const double lag = stage.lead()[leader] - stage.lead()[own];
+      const bool as_well = own == leader || (!candidate.instant() && lag < kHopeless &&
+                                             stage.plausible(own, lag, stage.effects()) > kRivalKept);
+      if (!as_well) continue;
+      f.more_inner.push_back(stage.detector().best_block(own).inner);
+      return true;
+    }
+    return false;
+  }
+
+  /// Looks at an addition with all the others in the base: drops it when it is not needed any more,
+  /// takes another effect in its place when that one leads now. False when the list changed.
+  bool judge(std::size_t at, bool may_change) {
+    Found& f = found()[at];
+    f.rivals.clear();
+    f.or_shape.clear();
+    Stage& stage = stage_without(&f);
+    const auto own = static_cast<Index>(f.candidate);
+    const bool testable = stage.detector().testable(own);
+    if (!testable || (may_change && stage.p_value_alone(own) > kStays)) {
+      found().erase(found().begin() + static_cast<std::ptrdiff_t>(at));
+      return false;
+    }
+    const Index leader = stage.best(stage.effects());
+    if (may_change && leader != own && !is_found(static_cast<std::size_t>(leader))) {
+      f = {.candidate = static_cast<std::size_t>(leader),
+           .effect = stage.candidate(leader).name,
+           .inner = stage.refined(leader)};
+      return false;
+    }
+    f.inner = stage.refined(own);
+    f.inner_at_edge = stage.at_edge(own);
+    f.p_value = stage.p_value(own);
+    find_rivals(f, stage);
+    face_shadows(f, stage);
+    return true;
+  }
+
+  void find_rivals(Found& f, Stage& stage) {
+    const auto own = static_cast<Index>(f.candidate);
+    std::vector<std::pair<double, std::string>> behind;
+    for (const Index c : stage.effects()) {
+      const double lag = stage.lead()[own] - stage.lead()[c];
+      if (c == own || is_found(static_cast<std::size_t>(c)) || lag > kHopeless) continue;
+      if (stage.plausible(c, lag, stage.effects()) > kRivalKept) {
+        behind.emplace_back(std::max(lag, 0.0), stage.candidate(c).name);
+      }
+    }
+    if (stage.candidate(own).slow && f.p_value > kBeyondWalk) behind.emplace_back(0.0, "random_walk");
+    double total = 1.0;
+    for (const auto& [lag, name] : behind) total += std::exp(-0.5 * lag);
+    f.probability = 1.0 / total;
+    std::sort(behind.begin(), behind.end());
+    for (const auto& [lag, name] : behind) {
+      f.rivals.push_back({name, std::exp(-0.5 * lag) / total});
+    }
+  }
+
+  /// A shape from outside the catalogue that leads by more than the effect's own world allows says
+  /// that the effect is not the truth.
+  void face_shadows(Found& f, Stage& stage) {
+    if (stage.shadows().empty()) return;
+    const auto own = static_cast<Index>(f.candidate);
+    const Index shadow = stage.best(stage.shadows());
+    const double ahead = stage.lead()[shadow] - stage.lead()[own];
+    const double p = ahead > 0.0 ? stage.plausible(own, ahead, stage.shadows()) : 1.0;
+    if (p < kOutside) {
+      if (p < result_.p_outside) {
+        result_.outside_shape = stage.candidate(shadow).name;
+        result_.p_outside = p;
+      }
+    } else if (ahead > 0.0 || (-ahead < kHopeless &&
+                               stage.plausible(shadow, -ahead, stage.effects()) > kRivalKept)) {
+      f.or_shape = stage.candidate(shadow).name;
+    }
+  }
+
+  const SearchInput& input_;
+  const SearchOptions& options_;
+  SearchResult result_;
+  std::unique_ptr<Stage> bare_, other_;
+};
 
 }  // namespace
 
-MatrixXd columns_of(const Found& found, const Signals& signals) {
-  const MatrixXd value = finite_regressor(*found.effect, signals, found.inner);
-  if (found.inner.empty() || found.effect->info().parameters.front().name == "t0") return value;
-  const double a = found.inner.front();
-  const double h = 1e-3 * std::abs(a);
-  const MatrixXd up = finite_regressor(*found.effect, signals, std::vector{a + h});
-  const MatrixXd down = finite_regressor(*found.effect, signals, std::vector{a - h});
-  MatrixXd out = joined(value, (up - down) / (2.0 * h));
-  for (const double more : found.more_inner) {
-    out = joined(out, finite_regressor(*found.effect, signals, std::vector{more}));
+MatrixXd base_with(const SearchInput& input, const std::vector<Found>& found,
+                   const Found* except) {
+  MatrixXd base = input.base;
+  for (const Found& f : found) {
+    if (&f != except) base = joined(base, columns_of(f, input.library.candidates[f.candidate]));
   }
-  return out;
+  return full_rank(base);
 }
 
 MatrixXd full_rank(const MatrixXd& columns) {
@@ -271,40 +226,7 @@ MatrixXd full_rank(const MatrixXd& columns) {
 }
 
 SearchResult search(const SearchInput& input, const SearchOptions& options) {
-  const Library library = make_library(input.signals, input.model);
-  SearchResult result;
-  result.not_testable = library.not_testable;
-  std::uint64_t seed = options.seed;
-  while (result.found.size() < options.most_effects) {
-    // An effect that was found is still a candidate of the library; its own columns are in the base
-    // and leave nothing of it to test.
-    const MatrixXd base = base_with(input, result.found);
-    if (base.rows() <= base.cols() + 2) break;
-    result.bounds.clear();
-    const Step step = forward_step(
-        input, library, base,
-        result.found.empty() ? options.false_alarm_rate : options.later_false_alarm_rate, seed,
-        &result.bounds);
-    seed += 2;
-    result.p_of_step.push_back(step.p_value);
-    if (!step.significant) break;
-    const auto again = std::find_if(result.found.begin(), result.found.end(), [&](const Found& f) {
-      return f.effect == step.found.effect;
-    });
-    if (again != result.found.end()) {
-      if (step.found.inner.empty() || again->more_inner.size() >= kMostShapes) break;
-      again->more_inner.push_back(step.found.inner.front());
-      continue;
-    }
-    if (!step.outside_shape.empty() && result.outside_shape.empty()) {
-      result.outside_shape = step.outside_shape;
-      result.p_outside = step.p_outside;
-    }
-    result.found.push_back(step.found);
-    refine_all(input, library, result.found);
-    drop_superfluous(input, library, result.found, seed + 1000);
-  }
-  return result;
+  return Search(input, options).run();
 }
 
 }  // namespace fogbench::model

@@ -1,4 +1,4 @@
-#include "model/diagnose/shapes.hpp"
+#include "model/diagnose/moving_signals.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,103 @@
+#include "model/diagnose/stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fogbench::model {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr Index kNullDraws = 499;
+constexpr Index kNullDrawsManyRows = 199;
+constexpr Index kManyRows = 400;
+constexpr Index kRivalDraws = 299;
+
+Index draws_for(Index rows) { return rows > kManyRows ? kNullDrawsManyRows : kNullDraws; }
+
+}  // namespace
+
+Stage::Stage(const SearchInput& input, MatrixXd base, std::uint64_t seed)
+    : input_(input),
+      base_(std::move(base)),
+      seed_(seed),
+      detector_(input.shapes, base_, input.library, input.y),
+      calibration_(detector_.lambdas(detector_.draw(draws_for(input.y.size()), seed))),
+      lead_(calibration_.lead(detector_.observed())) {
+  for (Index c = 0; c < detector_.candidates(); ++c) {
+    if (!detector_.testable(c)) continue;
+    (candidate(c).shadow() ? shadows_ : effects_).push_back(c);
+  }
+}
+
+Index Stage::best(const std::vector<Index>& among) const {
+  return *std::max_element(among.begin(), among.end(),
+                           [&](Index a, Index b) { return lead_[a] < lead_[b]; });
+}
+
+double Stage::plausible(Index world, double lag, const std::vector<Index>& others) {
+  if (noise_.count == 0) noise_ = detector_.draw(kRivalDraws, seed_ + 1, best(effects_));
+  const MatrixXd leads = calibration_.lead(detector_.lambdas(noise_, detector_.fitted_signal(world)));
+  Index reached = 0;
+  for (Index b = 0; b < leads.cols(); ++b) {
+    double top = leads(world, b);
+    for (const Index c : others) top = std::max(top, leads(c, b));
+    reached += top - leads(world, b) >= lag ? 1 : 0;
+  }
+  return static_cast<double>(reached) / static_cast<double>(leads.cols());
+}
+
+bool Stage::at_edge(Index c) const {
+  const Candidate& which = candidate(c);
+  if (!which.parameter || which.instant()) return false;
+  const double inner = detector_.best_block(c).inner;
+  return inner == which.blocks.front().inner || inner == which.blocks.back().inner;
+}
+
+double Stage::refined(Index c) const {
+  const Candidate& which = candidate(c);
+  const double inner = detector_.best_block(c).inner;
+  // The likelihood of an instant is a staircase: the grid is its resolution.
+  if (!which.parameter || which.instant()) return inner;
+  const auto& blocks = which.blocks;
+  const auto at = static_cast<std::size_t>(
+      std::find_if(blocks.begin(), blocks.end(), [&](const Block& b) { return b.inner == inner; }) -
+      blocks.begin());
+  double low = blocks[at > 0 ? at - 1 : at].inner;
+  double high = blocks[at + 1 < blocks.size() ? at + 1 : at].inner;
+  constexpr double kGolden = 0.381966;
+  constexpr int kRounds = 12;
+  const auto lambda = [&](double value) { return detector_.lambda_of(which.columns(value)); };
+  double inside = inner, best = lambda(inside);
+  for (int i = 0; i < kRounds && high > low; ++i) {
+    const double trial = high - inside > inside - low ? inside + kGolden * (high - inside)
+                                                      : inside - kGolden * (inside - low);
+    const double value = lambda(trial);
+    if (value > best) {
+      (trial > inside ? low : high) = inside;
+      inside = trial;
+      best = value;
+    } else {
+      (trial > inside ? high : low) = trial;
+    }
+  }
+  return inside;
+}
+
+std::vector<Bound> Stage::bounds() const {
+  constexpr double kTwoSided95 = 1.96;
+  std::vector<Bound> out;
+  for (const Index c : effects_) {
+    const auto coefficient = detector_.coefficients(c);
+    const VectorXd most =
+        coefficient.value.cwiseAbs() + kTwoSided95 * coefficient.standard_error;
+    out.push_back({candidate(c).name, most.maxCoeff(),
+                   candidate(c).units.empty() ? "" : candidate(c).units.front()});
+  }
+  return out;
+}
+
+}  // namespace fogbench::model

@@ -1,0 +1,53 @@
+#pragma once
+// One state of the search: a base, how well every candidate does beside it, and what noise alone
+// would make of that.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "model/diagnose/calibration.hpp"
+#include "model/diagnose/search.hpp"
+
+namespace fogbench::model {
+
+class Stage {
+ public:
+  /// The input must outlive the stage.
+  Stage(const SearchInput& input, Eigen::MatrixXd base, std::uint64_t seed);
+
+  const Detector& detector() const { return detector_; }
+  const Candidate& candidate(Eigen::Index c) const {
+    return input_.library.candidates[static_cast<std::size_t>(c)];
+  }
+  /// Testable effects and shadows.
+  const std::vector<Eigen::Index>& effects() const { return effects_; }
+  const std::vector<Eigen::Index>& shadows() const { return shadows_; }
+  /// Of each candidate: its Lambda less its own noise quantile.
+  const Eigen::VectorXd& lead() const { return lead_; }
+  /// The one of `among` that leads; precondition: not empty.
+  Eigen::Index best(const std::vector<Eigen::Index>& among) const;
+  /// Global p-value of the lead among all effects.
+  double p_value(Eigen::Index c) const { return calibration_.p_value(lead_[c], effects_); }
+  /// The same of one candidate by itself.
+  double p_value_alone(Eigen::Index c) const { return calibration_.p_value(lead_[c], {c}); }
+  /// P(one of `others` is ahead of `world` by at least `lag`, where `world` as fitted is the truth).
+  double plausible(Eigen::Index world, double lag, const std::vector<Eigen::Index>& others);
+  /// The best point of the candidate's inner parameter, by golden section between grid points.
+  double refined(Eigen::Index c) const;
+  bool at_edge(Eigen::Index c) const;
+  std::vector<Bound> bounds() const;
+
+ private:
+  const SearchInput& input_;
+  Eigen::MatrixXd base_;
+  std::uint64_t seed_;
+  Detector detector_;
+  Calibration calibration_;
+  Eigen::VectorXd lead_;
+  std::vector<Eigen::Index> effects_, shadows_;
+  /// Noise as it is when the leader is in the model; drawn when first needed.
+  Draws noise_;
+};
+
+}  // namespace fogbench::model

@@ -1,0 +1,74 @@
+#include "model/diagnose/verdict_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "model/conclusions.hpp"
+
+namespace fogbench::model {
+namespace {
+
+std::string verdict_sentence(const Diagnosis& d) {
+  switch (d.verdict) {
+    case Verdict::kNothingMissing:
+      return fmt::format("Nothing is missing that these data can show ({}): what is left, {:.3g} "
+                         "deg/h RMS, is noise.",
+                         probability_text(d.p_adequate), d.before.fit.rms);
+    case Verdict::kMissingEffect: {
+      std::vector<std::string> names;
+      for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
+      return fmt::format("Missing: {} ({}).", fmt::join(names, ", "),
+                         probability_text(d.p_adequate));
+    }
+    case Verdict::kAmbiguous:
+      return fmt::format("Something is missing ({}), and these data cannot say which of several "
+                         "effects it is.",
+                         probability_text(d.p_adequate));
+    case Verdict::kUnexplained:
+      return fmt::format(
+          "Something is left that no effect of the catalogue explains ({}){}.",
+          probability_text(d.unexplained.p_value),
+          d.unexplained.depends_on.empty()
+              ? std::string()
+              : fmt::format("; it depends on {}", fmt::join(d.unexplained.depends_on, ", ")));
+  }
+  return {};
+}
+
+std::string effect_sentence(const MissingEffect& m) {
+  std::string line = m.found.effect + ": ";
+  for (std::size_t i = 0; i < m.estimates.size(); ++i) {
+    const Estimate& e = m.estimates[i];
+    line += fmt::format("{}{} = {:.4g} +- {:.2g} {}", i > 0 ? ", " : "", e.name, e.value,
+                        e.coverage_factor * e.standard_error, e.unit);
+  }
+  line += fmt::format("; {}, the RMS residual falls to {:.3g} deg/h",
+                      probability_text(m.found.p_value), m.rms_after);
+  if (m.found.inner_at_edge) {
+    line += "; its inner parameter lies on the edge of the range and is not identified";
+  }
+  if (!m.found.more_inner.empty()) {
+    line += "; one value of its inner parameter does not suffice, its shape bends";
+  }
+  if (!m.found.or_shape.empty()) {
+    line += fmt::format("; or another effect of this shape ({})", m.found.or_shape);
+  }
+  return line + ".";
+}
+
+}  // namespace
+
+std::vector<std::string> verdict_in_words(const Diagnosis& d) {
+  std::vector<std::string> out{verdict_sentence(d)};
+  for (const MissingEffect& m : d.missing) out.push_back(effect_sentence(m));
+  for (const auto& set : d.ambiguous) {
+    out.push_back(fmt::format("Cannot tell apart: {}.", fmt::join(set, ", ")));
+  }
+  if (!d.unexplained.suggestion.empty()) {
+    out.push_back(fmt::format("A shape to start from (a guess, no catalogue effect has it): {}.",
+                              d.unexplained.suggestion));
+  }
+  return out;
+}
+
+}  // namespace fogbench::model
