@@ -7,36 +7,18 @@
 #include <map>
 #include <random>
 
-#include "model/diagnose/search.hpp"
+#include "model/diagnose/diagnose.hpp"
 #include "tests/support/foreign_bench.hpp"
 
 using namespace fogbench;
 using namespace fogbench::tests;
 
-static model::SearchResult run(const model::Table& table, Design design) {
-  static thread_local config::ModelFile file;
-  file = {};
-  for (const auto& t : base_terms(design)) {
-    file.terms.push_back({});
-    file.terms.back().effect = t;
-  }
-  const model::Signals signals(table, 21.0);
-  Eigen::MatrixXd base(static_cast<Eigen::Index>(signals.rows()),
-                       static_cast<Eigen::Index>(file.terms.size()));
-  for (std::size_t i = 0; i < file.terms.size(); ++i) {
-    base.col(static_cast<Eigen::Index>(i)) =
-        model::finite_regressor(*model::find_effect(file.terms[i].effect), signals, {});
-  }
-  model::Windows w;
-  for (const auto& r : signals.runs()) w.run_begin.push_back(r.begin);
-  w.run_begin.push_back(signals.rows());
-  w.centre_s = signals.signal("time_s");
-  w.duration_s = signals.signal("duration_s");
-  w.white_floor = signals.signal("rate_std_error_deg_per_h");
-  auto shapes = model::NoiseShapes::make(w);
-  if (!shapes) { fmt::print("{}\n", shapes.error().message); std::exit(1); }
-  const model::SearchInput input{signals, *shapes, file, base, signals.signal("rate_deg_per_h")};
-  return model::search(input, {});
+static model::Diagnosis run(const model::Table& table, Design design) {
+  config::ModelFile file;
+  for (const auto& t : base_terms(design)) file.terms.push_back({.effect = t});
+  auto r = model::diagnose(table, file, {});
+  if (!r) { fmt::print("{}\n", r.error().message); std::exit(1); }
+  return *r;
 }
 
 int main(int argc, char** argv) {
@@ -77,9 +59,11 @@ int main(int argc, char** argv) {
     const auto t = make_foreign_table(design, noise, hidden, 1000 + std::uint64_t(i));
     const auto r = run(t.table, design);
     std::string name;
-    for (const auto& f : r.found) {
-      name += std::string(f.effect->info().id);
-      if (!f.inner.empty()) name += fmt::format("({:.3g})", f.inner[0]);
+    for (const auto& m : r.missing) {
+      const auto& f = m.found;
+      name += f.effect + fmt::format("({:.3g}", f.inner);
+      for (double x : f.more_inner) name += fmt::format(",{:.3g}", x);
+      name += fmt::format(" p{:.1g})", f.p_value);
       if (!f.rivals.empty()) {
         name += "{";
         for (const auto& x : f.rivals) name += fmt::format("{} {:.2f},", x.effect, x.probability);
@@ -88,13 +72,13 @@ int main(int argc, char** argv) {
       if (!f.or_shape.empty()) name += "|" + f.or_shape;
       name += " + ";
     }
-    if (!r.outside_shape.empty()) name += " OUTSIDE " + r.outside_shape;
-    std::string ps;
-    for (double p : r.p_of_step) ps += fmt::format("{:.2g} ", p);
-    if (argc > 7 || i < 3) fmt::print("{:3d} p {} {}\n", i, ps, name);
-    alarms += !r.found.empty();
-    if (!r.found.empty() && r.found[0].effect->info().id == what) ++right;
-    ++answers[r.found.empty() ? "adequate" : std::string(r.found[0].effect->info().id) + (r.found[0].rivals.empty() ? "" : " (set)") + (r.found.size() > 1 ? " +more" : "")+(r.outside_shape.empty()?"":" OUT")];
+    if (r.verdict == model::Verdict::kUnexplained) name += fmt::format(" UNEXPLAINED p{:.1g} {} {}", r.unexplained.p_value, r.unexplained.suggestion, r.unexplained.depends_on.empty()?"":r.unexplained.depends_on[0]);
+    if (argc > 7 || i < 3) fmt::print("{:3d} p {:.2g} {}\n", i, r.p_adequate, name);
+    alarms += r.verdict != model::Verdict::kNothingMissing;
+    if (!r.missing.empty() && r.missing[0].found.effect == what) ++right;
+    std::string key(model::name_of(r.verdict));
+    for (const auto& m : r.missing) { key += " " + m.found.effect; if (!m.found.rivals.empty()) { key += "{"; for (const auto& x : m.found.rivals) key += x.effect + " "; key += "}"; } }
+    ++answers[key];
   }
   const double secs = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count();
   fmt::print("{}: {} trials, found {}, first right {}, {:.2f} s each\n", what, trials, alarms, right, secs / trials);
