@@ -112,6 +112,25 @@ Result<PlannedProcedure> plan_procedure(const std::string& name, const config::B
 Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
                                                const fs::path& store, Speed speed,
                                                drivers::Operator& person) {
+  const OpenRecord open_log = [&store](Session& session) -> Result<procedures::Recorder*> {
+    auto log = RunLog::open(store);
+    if (!log) return log.error();
+    session.log_ = std::move(*log);
+    return session.log_.get();
+  };
+  return open(std::move(setup), seed, open_log, speed, person);
+}
+
+Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
+                                               procedures::Recorder& record, Speed speed,
+                                               drivers::Operator& person) {
+  const OpenRecord given = [&record](Session&) -> Result<procedures::Recorder*> { return &record; };
+  return open(std::move(setup), seed, given, speed, person);
+}
+
+Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
+                                               const OpenRecord& open_record, Speed speed,
+                                               drivers::Operator& person) {
   std::unique_ptr<Session> session(new Session(std::move(setup), seed));
   const Setup& made = session->setup_;
   if (speed == Speed::kRealtime) {
@@ -120,18 +139,17 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
     // Starts today, so that the record's dates mean something; nothing measured depends on it.
     session->clock_ = std::make_unique<drivers::VirtualClock>(drivers::SteadyClock().wall_now());
   }
-  // Before the run log, so that a scenario which cannot be simulated leaves nothing behind.
+  // Before the record, so that a scenario which cannot be simulated leaves nothing behind.
   auto transports = simulator::simulate_bench(made.bench, made.scenario, seed, *session->clock_);
   if (!transports) return transports.error();
-  auto log = RunLog::open(store);
-  if (!log) return log.error();
-  session->log_ = std::move(*log);
+  const auto record = open_record(*session);
+  if (!record) return record.error();
   auto bench = drivers::open_bench(made.bench, std::move(*transports), *session->clock_, person);
   if (!bench) return bench.error();
   session->bench_ = std::move(*bench);
   if (const Status safe = procedures::make_safe(session->bench_); !safe) return safe.error();
-  session->engine_ = std::make_unique<procedures::RunEngine>(
-      made.bench, session->bench_, *session->clock_, person, *session->log_);
+  session->engine_ = std::make_unique<procedures::RunEngine>(made.bench, session->bench_,
+                                                             *session->clock_, person, **record);
   return session;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,17 +65,27 @@ class Session {
                                                const std::filesystem::path& store, Speed speed,
                                                drivers::Operator& person);
 
+  /// The same with a record of the caller's own, which must outlive the session: no run log.
+  static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
+                                               procedures::Recorder& record, Speed speed,
+                                               drivers::Operator& person);
+
   /// Runs one procedure to its end in the safe state. Errors: as RunEngine::run.
   Result<procedures::RunSummary> run(const PlannedProcedure& procedure);
   procedures::RunEngine& engine() { return *engine_; }
 
  private:
+  using OpenRecord = std::function<Result<procedures::Recorder*>(Session&)>;
+
   Session(Setup setup, std::uint64_t seed) : setup_(std::move(setup)), seed_(seed) {}
+  static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
+                                               const OpenRecord& open_record, Speed speed,
+                                               drivers::Operator& person);
 
   Setup setup_;
   std::uint64_t seed_;
   std::unique_ptr<drivers::Clock> clock_;
-  std::unique_ptr<RunLog> log_;
+  std::unique_ptr<RunLog> log_;  ///< null when the record is the caller's
   drivers::Bench bench_;
   std::unique_ptr<procedures::RunEngine> engine_;
 };
