@@ -47,5 +47,7 @@ void add_compensate(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_diagnose(CLI::App& app, Action& action);
 void add_allan(CLI::App& app, Action& action);
+void add_challenge(CLI::App& app, Action& action);
+void add_reveal(CLI::App& app, Action& action);
 
 }  // namespace fogbench::cli

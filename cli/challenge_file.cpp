@@ -1,0 +1,83 @@
+#include "cli/challenge_file.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/seal.hpp"
+#include "config/describe_scenario.hpp"
+#include "daemon/file_hash.hpp"
+
+namespace fogbench::cli {
+
+template <class Visitor>
+void describe(Visitor& v, ChallengeSecret& s) {
+  v.required("seed", s.seed, "Of the draw and of all noise.");
+  v.required("scenario", s.scenario, "What the gyro is and hides.");
+  v.optional("visible_deg_per_h", s.visible_deg_per_h, "By hidden effect.");
+  v.required("noise_deg_per_h", s.noise_deg_per_h, "What is left when nothing is hidden.");
+}
+
+template <class Visitor>
+void describe(Visitor& v, ChallengeFile& f) {
+  v.required("says", f.says, "What this is.");
+  v.required("software_version", f.software_version, "That made it.");
+  v.required("noise", f.noise, "Grade of the gyro.");
+  v.required("procedure", f.procedure, "That measured it.");
+  v.optional("set", f.set, "Parameters of the procedure.");
+  v.required("data_sha256", f.data_sha256, "Of measurements.csv.");
+  v.required("seal", f.seal, "What is hidden.");
+}
+
+namespace {
+
+/// What the seal is bound to beside the data.
+std::string beside(ChallengeFile file) {
+  file.seal.clear();
+  return config::Codec<ChallengeFile>::write(file).dump();
+}
+
+}  // namespace
+
+std::string sealed_text(ChallengeFile file, const ChallengeSecret& secret) {
+  const std::string text = config::Codec<ChallengeSecret>::write(secret).dump();
+  file.seal = seal(text, file.data_sha256, beside(file));
+  return config::pretty_json(config::Codec<ChallengeFile>::write(file));
+}
+
+Result<ChallengeSecret> open_challenge(const std::filesystem::path& folder) {
+  const std::filesystem::path name = folder / kSealedFile;
+  const auto file = config::read_config<ChallengeFile>(name);
+  if (!file) return file.error();
+  const std::filesystem::path data = folder / kMeasurementsFile;
+  const auto sha256 = daemon::file_sha256(data);
+  if (!sha256) return sha256.error();
+  if (*sha256 != file->data_sha256) {
+    return Error{
+        ErrorCode::kBadInput,
+        fmt::format("{}: found SHA-256 {}, expected {} as in {}: the seal opens with the "
+                    "data that were sealed only",
+                    data.string(), *sha256, config::one_line(file->data_sha256), name.string())};
+  }
+  const auto opened = open_seal(file->seal, *sha256, beside(*file));
+  if (!opened) {
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("{}: /seal: {}", name.string(), opened.error().message)};
+  }
+  const auto tree = config::parse_json(*opened, name.string());
+  if (!tree) return tree.error();
+  config::ReadState state{name, std::nullopt};
+  ChallengeSecret secret;
+  if (!config::Codec<ChallengeSecret>::read(config::Place(*tree, state), secret, {})) {
+    return *state.error;
+  }
+  if (secret.visible_deg_per_h.size() != secret.scenario.hidden.size()) {
+    return Error{
+        ErrorCode::kBadInput,
+        fmt::format("{}: /seal: {} sizes of {} hidden effects, expected one of each", name.string(),
+                    secret.visible_deg_per_h.size(), secret.scenario.hidden.size())};
+  }
+  return secret;
+}
+
+}  // namespace fogbench::cli

@@ -1,0 +1,36 @@
+#pragma once
+// What the gyro of a challenge hides, and the procedure that lets an engineer find it.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "config/model_file.hpp"
+#include "config/scenario.hpp"
+
+namespace fogbench::cli {
+
+/// A draw before it was measured: each hidden effect has the amplitude 1 or -1.
+struct ChallengeDraw {
+  std::string procedure;                           ///< a ready one
+  std::map<std::string, std::vector<double>> set;  ///< its parameters, where not as they stand
+  std::string noise;                               ///< grade
+  config::ScenarioConfig scenario;
+  /// By hidden effect: how much of it the model cannot take up, RMS over the rows, in multiples of
+  /// what noise alone leaves there.
+  std::vector<double> visibility;
+  config::ModelFile model;  ///< to start from: a bias and what the procedure excites, linear
+  std::uint64_t bench_seed = 0;
+};
+
+/// Of 40 draws, on average: 5 hide nothing, 27 one effect, 8 two effects of different kinds.
+ChallengeDraw draw_challenge(std::uint64_t seed);
+
+/// Rounded, so that a revealed number is one that a person would have chosen.
+double three_digits(double value);
+
+/// Every effect that a challenge may hide.
+std::vector<std::string> hideable_effects();
+
+}  // namespace fogbench::cli
