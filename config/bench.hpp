@@ -26,6 +26,8 @@ struct InstrumentConfig {
 
 struct ThermostatConfig : InstrumentConfig {
   ModbusDevice device;
+  /// First-order lag of the sensors on the carrier, which the averages are freed of.
+  Seconds sensor_lag{0.0};
 };
 struct MagnetometerConfig : InstrumentConfig {
   HidDevice device;

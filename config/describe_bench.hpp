@@ -59,6 +59,9 @@ void describe(Visitor& v, ThermostatConfig& t) {
   describe_instrument(v, t);
   v.required("device", DeviceReference<ModbusDevice>{t.device},
              "Its description, a device file of the kind modbus, relative to this file.");
+  v.optional("sensor_lag_s", t.sensor_lag,
+             "First-order lag of the sensors on the carrier; averages are freed of it.",
+             between(0, 120));
 }
 
 template <class Visitor>

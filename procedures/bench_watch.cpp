@@ -97,6 +97,8 @@ Status BenchWatch::read_slow_instruments() {
   if (!noted) return noted;
 
   has_new_row_ = true;
+  recent_.push_back(row_);
+  while (recent_.front().time_s < row_.time_s - kRecentS) recent_.pop_front();
   return recorder_.monitor(row_);
 }
 

@@ -8,6 +8,7 @@
 // counts as failed: it never enters an average.
 
 #include <array>
+#include <deque>
 #include <optional>
 #include <string>
 
@@ -24,6 +25,8 @@ class BenchWatch {
   static constexpr drivers::Clock::Duration kPeriod = std::chrono::seconds{1};
   /// Longer than an instrument's restart, shorter than anything thermal.
   static constexpr config::Seconds kLongestOutage{30.0};
+  /// How long the slow readings are kept: a window looks back to just before its start.
+  static constexpr double kRecentS = 60.0;
   /// How far above its limit a temperature may overshoot.
   static constexpr config::Celsius kOvershoot{2.0};
 
@@ -44,6 +47,8 @@ class BenchWatch {
   const drivers::GyroBlock& frames() const { return frames_; }
   /// Null when the last tick read no slow instruments.
   const MonitorRow* new_row() const { return has_new_row_ ? &row_ : nullptr; }
+  /// Of the last kRecentS seconds, the last tick's included.
+  const std::deque<MonitorRow>& recent_rows() const { return recent_; }
 
   /// The first frame that has not come yet.
   std::int64_t next_frame() const { return next_frame_; }
@@ -75,6 +80,7 @@ class BenchWatch {
   Recorder& recorder_;
   drivers::GyroBlock frames_;
   MonitorRow row_;
+  std::deque<MonitorRow> recent_;
   bool has_new_row_ = false;
   std::int64_t next_frame_ = 0;
   Instant power_on_{};

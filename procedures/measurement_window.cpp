@@ -23,25 +23,39 @@ double working_temperature_c(const drivers::ThermostatReading& reading) {
   return (reading.working_1.value + reading.working_2.value) / 2.0;
 }
 
-MeasurementWindow::MeasurementWindow(const config::GyroConfig& config, const drivers::Gyro& gyro,
-                                     drivers::Clock::Instant power_on, std::int64_t begin,
+MeasurementWindow::MeasurementWindow(const config::BenchConfig& config, const drivers::Gyro& gyro,
+                                     const BenchWatch& watch, std::int64_t begin,
                                      config::Seconds duration)
     : config_(config),
       gyro_(gyro),
-      power_on_(power_on),
+      power_on_(watch.power_on()),
       duration_(duration),
       frames_(begin, frames_in(duration, gyro),
-              std::llround(config.max_gap.count() * gyro.frame_rate_hz())) {}
+              std::llround(config.gyro.max_gap.count() * gyro.frame_rate_hz())),
+      start_s_(watch.time_s(gyro.time_of(frames_.begin()))),
+      end_s_(watch.time_s(end_time())),
+      temperature_(start_s_, end_s_, config.thermostat.sensor_lag.count()),
+      gradient_(temperature_),
+      control_(temperature_) {
+  for (const MonitorRow& row : watch.recent_rows()) add(row);
+}
+
+drivers::Clock::Instant MeasurementWindow::last_reading_time() const {
+  const double lag_s = config_.thermostat.sensor_lag.count();
+  if (lag_s == 0.0) return end_time();
+  return end_time() + drivers::from_seconds(SensorWindow::reach_s(lag_s));
+}
 
 void MeasurementWindow::add(const MonitorRow& row) {
   const auto inside = [this](drivers::Clock::Instant taken_at) {
     return taken_at >= gyro_.time_of(frames_.begin()) && taken_at <= end_time();
   };
   const drivers::ThermostatReading& t = row.thermostat;
+  const double read_at_s = drivers::to_seconds(t.taken_at - power_on_);
+  temperature_.add(read_at_s, working_temperature_c(t));
+  gradient_.add(read_at_s, t.working_1.value - t.working_2.value);
+  control_.add(read_at_s, t.control.value);
   if (inside(t.taken_at)) {
-    temperature_.add(drivers::to_seconds(t.taken_at - power_on_), working_temperature_c(t));
-    gradient_.add(t.working_1.value - t.working_2.value);
-    control_.add(t.control.value);
     target_.add(t.target.value);
     ambient_.add(t.ambient.value);
     heater_.add(t.boost_power.value + t.normal_power.value);
@@ -61,7 +75,7 @@ void MeasurementWindow::add(const MonitorRow& row) {
 std::string MeasurementWindow::void_reason() const {
   if (frames_.has_gap()) {
     return fmt::format("{} consecutive frames of the gyro lost, at most {} s may be",
-                       frames_.worst_loss(), config_.max_gap.count());
+                       frames_.worst_loss(), config_.gyro.max_gap.count());
   }
   if (too_few(temperature_.count(), duration_)) {
     return fmt::format("only {} readings of the thermostat in {} s", temperature_.count(),
@@ -75,25 +89,23 @@ std::string MeasurementWindow::void_reason() const {
 }
 
 Point MeasurementWindow::point(const PointLabels& labels) const {
-  const double start_s = drivers::to_seconds(gyro_.time_of(frames_.begin()) - power_on_);
-  const double end_s = drivers::to_seconds(end_time() - power_on_);
   Point p;
   p.kind = labels.kind;
   p.segment = labels.segment;
-  p.time_s = (start_s + end_s) / 2.0;
-  p.duration_s = end_s - start_s;
-  p.rate_deg_per_h = frames_.mean() - config_.reference_rate.value;
+  p.time_s = (start_s_ + end_s_) / 2.0;
+  p.duration_s = end_s_ - start_s_;
+  p.rate_deg_per_h = frames_.mean() - config_.gyro.reference_rate.value;
   p.rate_std_deg_per_h = frames_.standard_deviation();
   p.rate_std_error_deg_per_h =
       p.rate_std_deg_per_h / std::sqrt(static_cast<double>(frames_.count()));
   p.count = frames_.count();
   p.dropped = frames_.dropped();
   p.temperature_c = temperature_.mean();
-  p.temperature_start_c = temperature_.at(start_s);
-  p.temperature_end_c = temperature_.at(end_s);
-  p.temperature_rate_c_per_h = temperature_.slope() * 3600.0;
-  p.temperature_gradient_c = gradient_.value();
-  p.temperature_control_c = control_.value();
+  p.temperature_start_c = temperature_.start();
+  p.temperature_end_c = temperature_.end();
+  p.temperature_rate_c_per_h = temperature_.rate_per_s() * 3600.0;
+  p.temperature_gradient_c = gradient_.mean();
+  p.temperature_control_c = control_.mean();
   p.target_c = target_.value();
   p.ambient_c = ambient_.value();
   p.heater_w = heater_.value();

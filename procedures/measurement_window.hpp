@@ -9,8 +9,10 @@
 #include "config/bench.hpp"
 #include "config/procedure.hpp"
 #include "drivers/instruments.hpp"
+#include "procedures/bench_watch.hpp"
 #include "procedures/frame_window.hpp"
 #include "procedures/recorder.hpp"
+#include "procedures/sensor_window.hpp"
 #include "procedures/statistics.hpp"
 
 namespace fogbench::procedures {
@@ -26,10 +28,10 @@ struct PointLabels {
 
 class MeasurementWindow {
  public:
-  /// Starts with frame `begin`. Both references must outlive the window; `power_on` is the zero of
-  /// time.
-  MeasurementWindow(const config::GyroConfig& config, const drivers::Gyro& gyro,
-                    drivers::Clock::Instant power_on, std::int64_t begin, config::Seconds duration);
+  /// Starts with frame `begin`. `config` and `gyro` must outlive the window; the watch lends the
+  /// zero of time and the readings shortly before now.
+  MeasurementWindow(const config::BenchConfig& config, const drivers::Gyro& gyro,
+                    const BenchWatch& watch, std::int64_t begin, config::Seconds duration);
 
   void add(const drivers::GyroBlock& frames) { frames_.add(frames); }
   void add(const MonitorRow& row);
@@ -37,6 +39,9 @@ class MeasurementWindow {
   bool complete() const { return frames_.complete(); }
   std::int64_t end() const { return frames_.end(); }
   drivers::Clock::Instant end_time() const { return gyro_.time_of(frames_.end()); }
+  /// From when on no reading can improve the point: where the sensors lag, those just after the
+  /// window tell how fast the temperature changed at its end. A point may be taken before.
+  drivers::Clock::Instant last_reading_time() const;
   /// Why the window cannot be a point: a gap in the frames, or too few slow readings. Empty when it
   /// can. Precondition: complete().
   std::string void_reason() const;
@@ -44,13 +49,14 @@ class MeasurementWindow {
   Point point(const PointLabels& labels) const;
 
  private:
-  const config::GyroConfig& config_;
+  const config::BenchConfig& config_;
   const drivers::Gyro& gyro_;
   drivers::Clock::Instant power_on_;
   config::Seconds duration_;
   FrameWindow frames_;
-  LineFit temperature_;  ///< over seconds since power-on
-  Mean gradient_, control_, target_, ambient_, heater_;
+  double start_s_, end_s_;  ///< since power-on
+  SensorWindow temperature_, gradient_, control_;
+  Mean target_, ambient_, heater_;
   Mean field_x_, field_y_, field_z_;
   Mean current_horizontal_, current_vertical_, azimuth_;
 };

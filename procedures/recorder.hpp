@@ -54,9 +54,9 @@ struct Point {
   std::uint64_t count = 0;                ///< good frames in the window
   std::uint64_t dropped = 0;              ///< frames missing, bad or invalid in the window
   double temperature_c = 0.0;             ///< mean of the working sensors
-  double temperature_start_c = 0.0;       ///< fitted line's ends over the window
+  double temperature_start_c = 0.0;       ///< at the window's ends, freed of the sensors' lag
   double temperature_end_c = 0.0;
-  double temperature_rate_c_per_h = 0.0;  ///< fitted slope over the window
+  double temperature_rate_c_per_h = 0.0;  ///< mean over the window
   double temperature_gradient_c = 0.0;    ///< working 1 - working 2
   double temperature_control_c = 0.0;
   double target_c = 0.0;

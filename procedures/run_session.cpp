@@ -53,7 +53,8 @@ Result<StepResult> RunSession::act(const SetTemperature& step) {
 
 Result<StepResult> RunSession::act(const SettleTemperature& step) {
   SettleDetector detector({step.band.value, step.dwell.count(), step.slope_c_per_h});
-  TransientRecorder transients(config_.gyro, *bench_.gyro, watch_, step.segment, step.window);
+  TransientRecorder transients(config_, *bench_.gyro, watch_, step.segment, step.window,
+                               [this](const Point& p) { return record(p); });
   const auto deadline = watch_.now() + from_seconds(step.timeout.count());
   while (!detector.settled()) {
     if (watch_.now() >= deadline) {
@@ -66,7 +67,7 @@ Result<StepResult> RunSession::act(const SettleTemperature& step) {
     }
     const auto ticked = tick(deadline);
     if (!ticked) return ticked.error();
-    const auto recorded = transients.take([this](const Point& p) { return record(p); });
+    const auto recorded = transients.take();
     if (!recorded) return recorded.error();
     const MonitorRow* row = watch_.new_row();
     if (row == nullptr || std::isnan(row->thermostat.working_1.value)) continue;
@@ -74,19 +75,24 @@ Result<StepResult> RunSession::act(const SettleTemperature& step) {
     detector.add(watch_.time_s(t.taken_at), working_temperature_c(t),
                  heated_ ? t.target.value : t.ambient.value);
   }
+  const auto recorded = transients.finish();
+  if (!recorded) return recorded.error();
   return StepResult{detector.evidence_json(), {}};
 }
 
 Result<StepResult> RunSession::act(const Wait& step) {
-  TransientRecorder transients(config_.gyro, *bench_.gyro, watch_, step.segment, step.window);
+  TransientRecorder transients(config_, *bench_.gyro, watch_, step.segment, step.window,
+                               [this](const Point& p) { return record(p); });
   const auto deadline = std::max(watch_.now() + from_seconds(step.duration.count()),
                                  watch_.power_on() + from_seconds(step.operating_time.count()));
   while (watch_.now() < deadline) {
     const auto ticked = tick(deadline);
     if (!ticked) return ticked.error();
-    const auto recorded = transients.take([this](const Point& p) { return record(p); });
+    const auto recorded = transients.take();
     if (!recorded) return recorded.error();
   }
+  const auto recorded = transients.finish();
+  if (!recorded) return recorded.error();
   return StepResult{};
 }
 
@@ -112,8 +118,7 @@ Result<StepResult> RunSession::measure(Seconds duration, const PointLabels& labe
     // Whatever has arrived by now was measured before the window.
     auto ticked = tick(watch_.now());
     if (!ticked) return ticked.error();
-    MeasurementWindow window(config_.gyro, *bench_.gyro, watch_.power_on(), watch_.next_frame(),
-                             duration);
+    MeasurementWindow window(config_, *bench_.gyro, watch_, watch_.next_frame(), duration);
     while (!window.complete()) {
       // The last frame may come a little after it was measured.
       ticked = tick(std::max(window.end_time(), watch_.now() + std::chrono::milliseconds{20}));

@@ -2,39 +2,54 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace fogbench::procedures {
 
-Status TransientRecorder::take(const std::function<Status(const Point&)>& record) {
+Status TransientRecorder::take() {
   if (segment_.empty()) return {};
-  if (!window_) {
+  if (windows_.empty()) {
     begin(watch_.next_frame());
     return {};
   }
-  add();
-  while (window_->complete()) {
-    const std::string reason = window_->void_reason();
-    std::int64_t next = window_->end();
-    Status done;
+  for (MeasurementWindow& window : windows_) {
+    window.add(watch_.frames());
+    if (watch_.new_row() != nullptr) window.add(*watch_.new_row());
+  }
+  while (windows_.back().complete()) {
+    const std::string reason = windows_.back().void_reason();
     if (reason.empty()) {
-      done = record(window_->point({PointKind::kTransient, segment_, std::nan(""), {}}));
+      begin(windows_.back().end());
     } else {
-      next = watch_.next_frame();
-      done = watch_.event("info", fmt::format("an average of {} left out: {}", segment_, reason));
+      windows_.pop_back();
+      begin(watch_.next_frame());
+      auto noted =
+          watch_.event("info", fmt::format("an average of {} left out: {}", segment_, reason));
+      if (!noted) return noted;
     }
-    if (!done) return done;
-    begin(next);
-    add();
+    windows_.back().add(watch_.frames());
+  }
+  while (windows_.front().complete() && windows_.front().last_reading_time() <= watch_.now()) {
+    if (Status recorded = record_oldest(); !recorded) return recorded;
+  }
+  return {};
+}
+
+Status TransientRecorder::finish() {
+  while (!windows_.empty() && windows_.front().complete()) {
+    if (Status recorded = record_oldest(); !recorded) return recorded;
   }
   return {};
 }
 
 void TransientRecorder::begin(std::int64_t frame) {
-  window_.emplace(config_, gyro_, watch_.power_on(), frame, length_);
+  windows_.emplace_back(config_, gyro_, watch_, frame, length_);
 }
 
-void TransientRecorder::add() {
-  window_->add(watch_.frames());
-  if (watch_.new_row() != nullptr) window_->add(*watch_.new_row());
+Status TransientRecorder::record_oldest() {
+  const Point point = windows_.front().point({PointKind::kTransient, segment_, std::nan(""), {}});
+  windows_.pop_front();
+  return record_(point);
 }
 
 }  // namespace fogbench::procedures

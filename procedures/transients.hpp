@@ -2,8 +2,8 @@
 // Consecutive averages while something changes: gyro and temperatures together, window by window,
 // because dT/dt cannot be learned from settled plateaus.
 
+#include <deque>
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "config/bench.hpp"
@@ -14,29 +14,35 @@ namespace fogbench::procedures {
 
 class TransientRecorder {
  public:
-  /// An empty segment records nothing. All references must outlive the recorder.
-  TransientRecorder(const config::GyroConfig& config, const drivers::Gyro& gyro, BenchWatch& watch,
-                    std::string segment, config::Seconds window)
+  /// An empty segment records nothing. All references must outlive the recorder. `record` gets
+  /// every window, in order.
+  TransientRecorder(const config::BenchConfig& config, const drivers::Gyro& gyro, BenchWatch& watch,
+                    std::string segment, config::Seconds window,
+                    std::function<Status(const Point&)> record)
       : config_(config),
         gyro_(gyro),
         watch_(watch),
         segment_(std::move(segment)),
-        length_(window) {}
+        length_(window),
+        record_(std::move(record)) {}
 
-  /// Takes what the watch's last tick brought; `record` gets every window that it completes. A
-  /// window with a gap is left out, with an event, and a new one starts after it.
-  Status take(const std::function<Status(const Point&)>& record);
+  /// Takes what the watch's last tick brought. A window with a gap is left out, with an event, and
+  /// a new one starts after it.
+  Status take();
+  /// Records the windows that have all their frames but still wait for readings after their end.
+  Status finish();
 
  private:
   void begin(std::int64_t frame);
-  void add();
+  Status record_oldest();
 
-  const config::GyroConfig& config_;
+  const config::BenchConfig& config_;
   const drivers::Gyro& gyro_;
   BenchWatch& watch_;
   std::string segment_;
   config::Seconds length_;
-  std::optional<MeasurementWindow> window_;
+  std::function<Status(const Point&)> record_;
+  std::deque<MeasurementWindow> windows_;  ///< oldest first; only the last lacks frames
 };
 
 }  // namespace fogbench::procedures
