@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -62,6 +62,7 @@ config::ModelFile with_column(config::ModelFile model, const std::string& column
 
 std::vector<double> difference(const model::Table& a, const model::Table& b) {
   const auto first = a.column(kRate), second = b.column(kRate);
+  assert(first.size() == second.size());  // what hides changes no temperature and no time
   std::vector<double> result(first.begin(), first.end());
   for (std::size_t i = 0; i < result.size(); ++i) result[i] -= second[i];
   return result;

@@ -22,9 +22,7 @@ struct RevealOptions {
   bool json = false;
 };
 
-/// Of the amplitude that the simulator takes, which is the catalogue's but for the coils' heat.
 std::string amplitude_unit(const std::string& effect) {
-  if (effect == "coil_heating") return "deg/h per A^2";
   const model::Effect* known = model::find_effect(effect);
   return known == nullptr ? "" : std::string(known->info().units.front());
 }

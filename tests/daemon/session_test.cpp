@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/simulated_operator.hpp"
+#include "tests/support/memory_recorder.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -25,6 +27,25 @@ TEST(PlanProcedure, RecordsAFileWhoseNameIsNotText) {
   const auto record = nlohmann::json::parse(planned->procedure_json, nullptr, false);
   ASSERT_TRUE(record.is_object());
   EXPECT_EQ(record["files"].begin().value(), text);
+}
+
+TEST(Session, RecordsIntoWhatItsCallerKeeps) {
+  const auto ready = tests::source_tree() / "config";
+  auto setup = load_setup(
+      {(ready / "benches/simulated.json").string(), (ready / "scenarios/clean.json").string()});
+  ASSERT_TRUE(setup) << setup.error().message;
+  const auto planned = plan_procedure((ready / "procedures/static-record.json").string(),
+                                      setup->bench, {{"duration_s", 10.0}, {"average_s", 5.0}});
+  ASSERT_TRUE(planned) << planned.error().message;
+  test::MemoryRecorder record;
+  SimulatedOperator person;
+  const auto session = Session::open(std::move(*setup), 3, record, Speed::kMaximum, person);
+  ASSERT_TRUE(session) << session.error().message;
+  const auto summary = (*session)->run(*planned);
+  ASSERT_TRUE(summary) << summary.error().message;
+  EXPECT_EQ(summary->end.outcome, procedures::RunOutcome::kCompleted);
+  EXPECT_FALSE(record.points.empty());
+  EXPECT_EQ(record.headers.at(0).seed, 3U);
 }
 
 }  // namespace

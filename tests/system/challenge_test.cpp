@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -63,10 +64,14 @@ TEST_F(ChallengeTest, TheFolderHasDataAndAModelThatFitThem) {
   EXPECT_NE(made.out.find("Next: fogbench compare " + data + " --model " + model),
             std::string::npos)
       << made.out;
-  EXPECT_EQ(json({"fit", data, "--model", model, "-o", path("fitted.json"), "--json"})
-                .at("estimates")
-                .size(),
-            2U);
+  const auto fitted = json({"fit", data, "--model", model, "-o", path("fitted.json"), "--noise",
+                            "independent", "--json"});
+  EXPECT_EQ(fitted.at("estimates").size(), 2U);
+  // What the model leaves is what was said to hide, and the noise.
+  const auto revealed = json({"reveal", path("2"), "--json"});
+  const double visible = revealed.at("hidden").at(0).at("visible_deg_per_h");
+  const double noise = revealed.at("noise_deg_per_h");
+  EXPECT_NEAR(fitted.at("rms"), std::hypot(visible, noise), noise / 2.0);
   EXPECT_EQ(folder_.entries(), 2U) << "the challenge and the fitted model, nothing left behind";
 }
 
