@@ -77,9 +77,6 @@ ChallengeBench::ChallengeBench(const ChallengeDraw& draw, daemon::Setup setup,
 Result<ChallengeBench> ChallengeBench::open(const ChallengeDraw& draw) {
   auto setup = daemon::load_setup({});
   if (!setup) return setup.error();
-  // A sensor that lags is an error of the temperatures that no effect of a gyro explains: beside
-  // it, no answer would be right.
-  setup->bench.simulation.thermal.sensor_lag = config::Seconds(0.0);
   daemon::Parameters parameters;
   for (const auto& [name, values] : draw.set) parameters[name] = values;
   auto plan = daemon::plan_procedure(draw.procedure, setup->bench, parameters);
