@@ -1,7 +1,7 @@
 #pragma once
 // A comparison as one self-contained HTML page: the conclusions, measured against modelled rate,
-// the residual by each variable with the failing ranges marked, and the tables. SVG drawn here; no
-// scripts, no network; prints on paper.
+// the residual by each variable with the failing ranges marked, loops, and the tables. SVG drawn
+// here; no network; prints on paper, and reads without its small script.
 
 #include <string>
 

@@ -1,5 +1,6 @@
 #pragma once
-// A scatter plot as one SVG element: axes with round ticks, points, marked bands.
+// A plot as one SVG element: axes with round ticks, series of marks, lines, marked bands. How a
+// series looks beyond the shape of its marks is the page's style to say, by the series' kind.
 
 #include <string>
 #include <utility>
@@ -8,19 +9,31 @@
 namespace fogbench::model {
 
 struct SvgPlot {
+  /// Shapes that stay apart on grey paper. The triangles point the way that x goes.
+  enum class Mark { kDot, kSquare, kRight, kLeft };
+  struct Series {
+    std::string kind = "point";  ///< CSS classes
+    Mark mark = Mark::kDot;
+    bool joined = false;  ///< by a line in the order of the points, broken where one is missing
+    std::vector<std::pair<double, double>> points;
+    /// Which rows of the table each point stands for ("12", or "12,13" for their mean), for a
+    /// script that links plots; as many as points, or none.
+    std::vector<std::string> rows;
+  };
   struct Band {
     double from, to;    ///< along x
     std::string title;  ///< shown when pointed at
+    std::string label;  ///< a number, drawn at the top where there is room
   };
   std::string title;
   std::string x_label, y_label;
-  std::vector<std::pair<double, double>> points;
+  std::vector<Series> series;
   std::vector<Band> bands;  ///< failing ranges
   bool diagonal = false;    ///< the line y = x
   bool zero_line = false;   ///< the line y = 0
   double envelope = 0.0;    ///< dashed lines at y = +-envelope; 0: none
 
-  /// Points that are not finite are left out.
+  /// Points that are not finite are left out; empty when none is left.
   std::string svg() const;
 };
 

@@ -1,0 +1,19 @@
+#pragma once
+// A diagnosis as one self-contained HTML page: the verdict, the ladder of errors as effects are
+// added, the plots before and after, what competed, the coefficients, what was not found, what
+// could not be tested, what to measure next. Drawn here; no network; prints on paper, and reads
+// without its small script.
+
+#include <string>
+
+#include "config/model_file.hpp"
+#include "model/diagnose/diagnose.hpp"
+
+namespace fogbench::model {
+
+/// `model`: as it came. `data_name`: what was diagnosed, for the heading. At most some 2,000 points
+/// are drawn in each plot.
+std::string diagnosis_html(const Diagnosis& diagnosis, const config::ModelFile& model,
+                           const std::string& data_name);
+
+}  // namespace fogbench::model
