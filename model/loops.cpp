@@ -10,8 +10,10 @@ namespace {
 // it has come back this far; a pass shorter than the last is left out.
 constexpr double kStop = 1.0 / 40.0;
 constexpr double kTurn = 0.15;
-constexpr double kPass = 1.0 / 3.0;
+constexpr double kPass = 0.45;
 constexpr std::size_t kFewestStops = 3;
+// Share of the rows that passes must hold: noise turns all the time and seldom goes far.
+constexpr double kCovered = 0.75;
 
 struct Step {
   std::size_t row;  ///< of the table
@@ -54,8 +56,7 @@ std::vector<std::size_t> turns_of(const std::vector<Step>& steps, double range) 
   return turns;
 }
 
-/// The passes of one run or sweep; none where most of its steps lie on no pass (noise, or a
-/// variable that stands still).
+/// The passes of one run or sweep; none where the variable is noise or mostly stands still.
 void add_branches(std::vector<Branch>& out, const std::vector<Step>& steps, double range) {
   if (steps.size() < 2 * kFewestStops) return;
   const std::vector<std::size_t> turns = turns_of(steps, range);
@@ -73,7 +74,7 @@ void add_branches(std::vector<Branch>& out, const std::vector<Step>& steps, doub
     }
     last_was_kept = kept;
   }
-  if (2 * covered < steps.size()) return;
+  if (static_cast<double>(covered) < kCovered * static_cast<double>(steps.size())) return;
   std::move(found.begin(), found.end(), std::back_inserter(out));
 }
 

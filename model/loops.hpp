@@ -20,7 +20,7 @@ struct Branch {
 
 /// The branches of each run; of a field within each of its sweeps only (the segment before '/'),
 /// for other axes move the rest of the time. Empty unless the variable was passed in both
-/// directions, each time over a third of its range or more. Precondition:
+/// directions, each time over about half of its range or more. Precondition:
 /// signals.available(variable).
 std::vector<Branch> branches_of(const Signals& signals, std::string_view variable);
 
