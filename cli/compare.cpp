@@ -177,7 +177,7 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
       {.noise = options.noise, .weight_by = options.weight_by, .as_is = options.as_is});
   if (!result) return result.error();
   if (!options.report.empty()) {
-    const std::string page = model::report_html(*result, *table, *model, options.data.data.front());
+    const std::string page = model::report_html(*result, *table, *model, data_name(options.data));
     if (Status written = config::write_file(options.report, page); !written) {
       return written.error();
     }

@@ -9,9 +9,11 @@
 #include "cli/command.hpp"
 #include "cli/load_table.hpp"
 #include "cli/output.hpp"
+#include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/units.hpp"
 #include "model/diagnose/diagnose.hpp"
+#include "model/diagnose/diagnosis_report.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -22,6 +24,7 @@ struct DiagnoseOptions {
   DataOptions data;
   std::string model;
   std::string quiet;
+  std::string report;
   std::vector<std::string> candidates;
   std::uint64_t seed = model::DiagnoseOptions{}.seed;
   bool check = false;
@@ -36,9 +39,10 @@ std::string next_step(const model::Diagnosis& d, const DiagnoseOptions& options)
   }
   std::vector<std::string> effects;
   for (const model::MissingEffect& m : d.missing) effects.push_back(m.found.effect);
-  return fmt::format("fogbench add {} --model {} -o wider.json && fogbench diagnose {} --model "
-                     "wider.json",
-                     fmt::join(effects, " "), options.model, data);
+  return fmt::format(
+      "fogbench add {} --model {} -o wider.json && fogbench diagnose {} --model "
+      "wider.json",
+      fmt::join(effects, " "), options.model, data);
 }
 
 ordered_json missing_json(const model::MissingEffect& m) {
@@ -155,6 +159,7 @@ void print_text(const model::Diagnosis& d, const DiagnoseOptions& options, std::
   for (const model::NextMeasurement& n : d.next_measurements) {
     fmt::print("  {} (for {})\n", n.action, fmt::join(n.tells_apart, ", "));
   }
+  if (!options.report.empty()) fmt::print("\nReport: {}\n", options.report);
   fmt::print("\nNext: {}\n", next_step(d, options));
 }
 
@@ -199,6 +204,12 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
   }
   const auto result = model::diagnose(*table, *model, *how);
   if (!result) return result.error();
+  if (!options.report.empty()) {
+    const std::string page = model::diagnosis_html(*result, *model, data_name(options.data));
+    if (Status written = config::write_file(options.report, page); !written) {
+      return written.error();
+    }
+  }
   if (options.json) {
     print_json(to_json(*result, options));
   } else {
@@ -223,6 +234,7 @@ void add_diagnose(CLI::App& app, Action& action) {
                            "A static record of the same gyro: tells slow effects from noise");
         command.add_option("--candidate", options.candidates,
                            "Model file whose terms take part as candidates, beside the catalogue");
+        command.add_option("--report", options.report, "Write one self-contained HTML page");
         command.add_option("--seed", options.seed, "Of the simulated noise behind the p-values");
         command.add_flag("--check", options.check, "Exit with 1 unless nothing is missing");
         command.add_flag("--json", options.json, "One JSON document");

@@ -106,6 +106,14 @@ void add_data_options(CLI::App& command, DataOptions& options, DataCount count) 
   add_store_option(command, options.store);
 }
 
+std::string data_name(const DataOptions& options) {
+  std::vector<std::string> names;
+  for (const std::string& data : options.data) {
+    names.push_back(run_number(data) ? "run " + data : data);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 Result<model::Table> load_table(const DataOptions& options) {
   const auto renames = parse_renames(options.columns);
   if (!renames) return renames.error();

@@ -23,6 +23,9 @@ enum class DataCount { kOne, kSeveral };
 /// Declares DATA, --column, --segment, --unfinished and --store on a command.
 void add_data_options(CLI::App& command, DataOptions& options, DataCount count = DataCount::kOne);
 
+/// For headings: "run 7", "STORE.db#7, file.csv".
+std::string data_name(const DataOptions& options);
+
 /// The tables one after the other. With several, the run of each row is "DATA/run", so that test 1
 /// of two records stays two runs.
 /// Errors: kBadInput (no such file or run, not CSV, no row matches the segment), kStore.

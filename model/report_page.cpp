@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "config/units.hpp"
 #include "model/svg_plot.hpp"
@@ -27,7 +28,7 @@ h2 { font-size: 1.1rem; margin: 2.25rem 0 .75rem; }
 .verdict.fails { border-color: var(--fail); }
 .verdict p { margin: .5rem 0; overflow-wrap: anywhere; }
 .plots { display: grid; gap: 1.25rem;
-         grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); }
+         grid-template-columns: repeat(auto-fill, minmax(min(100%, 26rem), 1fr)); }
 figure { margin: 0; break-inside: avoid; min-width: 0; }
 figcaption { font-size: .875rem; margin: .1rem 0 0 .9rem; }
 svg { width: 100%; height: auto; display: block; }
@@ -47,7 +48,7 @@ svg .band { fill: var(--fail); fill-opacity: .13; }
 .joint.falling { stroke: var(--fail); stroke-dasharray: 6 3; }
 .here { fill: none; stroke: var(--ink); stroke-width: 2; }
 .legend { font-size: .875rem; display: flex; flex-wrap: wrap; gap: .25rem 1.5rem; margin: 0 0 1rem;
-          padding: 0; list-style: none; }
+          padding: 0; list-style: none; break-after: avoid; }
 .legend svg { width: 1.75rem; height: .9rem; display: inline-block; vertical-align: -.1rem;
               margin-right: .4rem; }
 .wide { overflow-x: auto; }
@@ -65,7 +66,9 @@ tr.fails td { color: var(--fail); font-weight: 600; }
 .figures dd { margin: 0; font-size: 1.35rem; font-variant-numeric: tabular-nums; }
 .switch { position: sticky; top: 0; z-index: 1; background: #fff; padding: .4rem 0; }
 .switch label { margin-left: .75rem; }
-[data-show="before"] .after, [data-show="after"] .before { display: none; }
+[data-show="before"] .after, [data-show="after"] .before, .alone,
+[data-show="after"] .together { display: none; }
+[data-show="after"] .alone { display: block; }
 .dots.before { stroke: var(--before); }
 .joint.thin { stroke: var(--ink); stroke-width: 1.2; } .marks.thin { display: none; }
 .bar { display: block; height: .6rem; min-width: 1px; margin: .15rem 0; border: 1px solid; }
@@ -81,22 +84,38 @@ footer { border-top: 1px solid var(--rule); margin-top: 2.5rem; font-size: .875r
 #tip { position: fixed; z-index: 2; pointer-events: none; background: #fff; font-size: .8125rem;
        border: 1px solid var(--soft); border-radius: .25rem; padding: .3rem .6rem; }
 #tip td { border: 0; padding: 0 .6rem 0 0; }
+@media (max-width: 40rem) {
+  table { font-size: .875rem; } th { white-space: normal; }
+  table.ranking .text { display: none; }
+  table.ladder tr { display: grid; grid-template-columns: 1fr 6rem 6rem; }
+  table.ladder td { border: 0; } table.ladder th.bars { display: none; }
+  table.ladder td.bars { grid-column: 1 / -1; width: auto; border-bottom: 1px solid var(--rule); }
+  table.ranking td.bars { width: 5rem; }
+}
 @media print {
-  body { max-width: none; padding: 0; font-size: 10pt; }
+  html { font-size: 12.5px; }
+  body { max-width: none; padding: 0; font-size: 1rem; }
   h2 { break-after: avoid; } tr, li { break-inside: avoid; } #tip, .here, .switch { display: none; }
   .plots { grid-template-columns: 1fr 1fr; gap: .75rem; }
   svg text { font-size: 13.5px; } svg .title { font-size: 14.5px; }
+  .figures { grid-template-columns: repeat(4, auto); }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 )";
 
-/// The digits that the uncertainty leaves meaning in, of both.
-std::string digits_of(double value, double expanded) {
-  if (!(expanded > 0.0) || !std::isfinite(expanded)) return fmt::format("{:.6g}", value);
+/// A value and its expanded uncertainty, to the digits that the uncertainty leaves meaning in.
+std::pair<std::string, std::string> value_and_uncertainty(const Estimate& e) {
+  if (std::isnan(e.value)) return {"not determined", ""};
+  if (e.held) return {fmt::format("{:.6g}", e.value), "held"};
+  const double expanded = e.coverage_factor * e.standard_error;
+  if (!std::isfinite(expanded)) return {fmt::format("{:.6g}", e.value), "unknown"};
+  if (!(expanded > 0.0)) return {fmt::format("{:.6g}", e.value), "0"};
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(expanded)));
-  constexpr int kMostDecimals = 9;
-  if (decimals < 0 || decimals > kMostDecimals) return fmt::format("{:.6g}", value);
-  return fmt::format("{:.{}f}", value, decimals);
+  constexpr int kMostDecimals = 6;
+  if (decimals < 0 || decimals > kMostDecimals) {
+    return {fmt::format("{:.6g}", e.value), fmt::format("{:.2g}", expanded)};
+  }
+  return {fmt::format("{:.{}f}", e.value, decimals), fmt::format("{:.{}f}", expanded, decimals)};
 }
 
 }  // namespace
@@ -144,16 +163,11 @@ std::string estimates_table(const std::vector<Estimate>& estimates,
       "<div class=\"wide\"><table><tr><th>term</th><th>estimate</th><th>&plusmn; (95.45 %)</th>"
       "<th class=\"text\">unit</th></tr>\n";
   for (const Estimate& e : estimates) {
-    const double expanded = e.coverage_factor * e.standard_error;
+    const auto [value, uncertainty] = value_and_uncertainty(e);
     const bool is_new = std::find(added.begin(), added.end(), e.name) != added.end();
-    out += fmt::format(
-        "<tr{}><td>{}{}</td><td>{}</td><td>{}</td><td class=\"text\">{}</td></tr>\n",
-        is_new ? " class=\"added\"" : "", escaped(e.name), is_new ? " (added)" : "",
-        std::isnan(e.value) ? "not determined" : digits_of(e.value, e.held ? 0.0 : expanded),
-        e.held                 ? "held"
-        : std::isnan(expanded) ? "unknown"
-                               : fmt::format("{:.2g}", expanded),
-        escaped(e.unit));
+    out += fmt::format("<tr{}><td>{}{}</td><td>{}</td><td>{}</td><td class=\"text\">{}</td></tr>\n",
+                       is_new ? " class=\"added\"" : "", escaped(e.name), is_new ? " (added)" : "",
+                       value, uncertainty, escaped(e.unit));
   }
   return out + "</table></div>\n";
 }

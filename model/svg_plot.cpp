@@ -9,8 +9,8 @@ namespace fogbench::model {
 namespace {
 
 // The plot's own coordinates; the page scales it to the width it has.
-constexpr double kWidth = 480.0, kHeight = 300.0;
-constexpr double kLeft = 66.0, kRight = 14.0, kTop = 34.0, kBottom = 48.0;
+constexpr double kWidth = 480.0, kHeight = 306.0;
+constexpr double kLeft = 66.0, kRight = 14.0, kTop = 40.0, kBottom = 48.0;
 
 /// One axis: data to the plot's coordinates.
 struct Axis {
@@ -90,8 +90,9 @@ class Drawing {
         y_(make_axis(extent.y_low, extent.y_high, kHeight - kBottom, kTop)) {}
 
   std::string svg() {
-    out_ = fmt::format("<svg viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n",
-                       kWidth, kHeight, escaped(plot_.title));
+    out_ = fmt::format("<svg{} viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n",
+                       plot_.kind.empty() ? "" : fmt::format(" class=\"{}\"", plot_.kind), kWidth,
+                       kHeight, escaped(plot_.title));
     bands();
     grid();
     lines();
@@ -113,10 +114,14 @@ class Drawing {
                         escaped(words));
   }
 
-  /// Where a band begins and ends, a little wider than its points; false: outside the plot.
+  /// Where a band begins and ends: a single value is widened until it can be seen. False: outside
+  /// the plot.
   bool place(const SvgPlot::Band& band, double& from, double& to) const {
-    from = std::max(x_(band.from) - 5.0, kLeft);
-    to = std::min(x_(band.to) + 5.0, kWidth - kRight);
+    constexpr double kLeastWidth = 10.0, kLeastMargin = 0.5;
+    const double margin =
+        std::max(0.5 * (kLeastWidth - (x_(band.to) - x_(band.from))), kLeastMargin);
+    from = std::max(x_(band.from) - margin, kLeft);
+    to = std::min(x_(band.to) + margin, kWidth - kRight);
     return to > from;
   }
 
@@ -144,7 +149,7 @@ class Drawing {
         continue;
       }
       taken.push_back(at);
-      text("number middle", at, kTop + 11.0, band.label);
+      text("number middle", at, kTop - 4.0, band.label);
     }
   }
 

@@ -23,7 +23,7 @@ struct SvgPlot {
   struct Band {
     double from, to;    ///< along x
     std::string title;  ///< shown when pointed at
-    std::string label;  ///< a number, drawn at the top where there is room
+    std::string label;  ///< a number, drawn above it where there is room
   };
   std::string title;
   std::string x_label, y_label;
@@ -32,6 +32,7 @@ struct SvgPlot {
   bool diagonal = false;    ///< the line y = x
   bool zero_line = false;   ///< the line y = 0
   double envelope = 0.0;    ///< dashed lines at y = +-envelope; 0: none
+  std::string kind;         ///< CSS class of the whole; empty: none
 
   /// Points that are not finite are left out; empty when none is left.
   std::string svg() const;

@@ -43,7 +43,7 @@ std::string heading(const Diagnosis& d, const config::ModelFile& model,
       "<header class=\"verdict{}\">\n<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n",
       d.verdict == Verdict::kNothingMissing ? "" : " fails", in_short(d.verdict),
       escaped(d.sentences.empty() ? std::string(in_short(d.verdict)) : d.sentences.front()));
-  out += fmt::format("<p class=\"sub\">{} &middot; model {}</p>\n", escaped(data_name),
+  out += fmt::format("<p class=\"sub\">{} &middot; model: {}</p>\n", escaped(data_name),
                      escaped(model.name));
   for (std::size_t i = 1; i < d.sentences.size(); ++i) {
     out += fmt::format("<p>{}</p>\n", escaped(d.sentences[i]));
@@ -58,7 +58,7 @@ std::string figures_of_merit(const Diagnosis& d, std::string_view unit) {
   const bool changed = !d.missing.empty();
   const std::string in = with_unit(unit);
   std::string out = "<dl class=\"figures\">\n";
-  out += figure_of_merit("p that the model as it came is adequate", p_text(d.p_adequate));
+  out += figure_of_merit("chance that noise alone looks so bad (p)", p_text(d.p_adequate));
   out += figure_of_merit("RMS residual" + in, from_to(d.before.fit.rms, d.after.rms, changed));
   out += figure_of_merit(
       "RMS on rows held out" + in,
@@ -86,7 +86,7 @@ std::string plots(const PlottedFits& fits) {
 
 std::string footer(const Diagnosis& d, const config::ModelFile& model,
                    const std::string& data_name) {
-  std::string out = fmt::format("<footer><p>{} &middot; model {} &middot; {} rows analysed",
+  std::string out = fmt::format("<footer><p>{} &middot; model: {} &middot; {} rows analysed",
                                 escaped(data_name), escaped(model.name), d.table.rows());
   if (d.rows_per_bin > 1) {
     out += fmt::format(", each the mean of up to {} rows of the data", d.rows_per_bin);

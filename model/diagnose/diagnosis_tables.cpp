@@ -40,7 +40,8 @@ std::string coefficient_row(std::string_view name, double value, std::string_vie
 }  // namespace
 
 std::string p_text(double p) {
-  return p < 1e-4 ? fmt::format("{:.0e}", p) : fmt::format("{:.2g}", p);
+  // Fewer worlds were simulated than a smaller number would need.
+  return p < 1e-4 ? "&lt; 0.0001" : fmt::format("{:.2g}", p);
 }
 
 std::string ladder_section(const Diagnosis& d, std::string_view unit) {
@@ -140,27 +141,29 @@ std::string noise_section(const Diagnosis& d) {
   if (!d.after.noise.says.empty()) {
     out += fmt::format("<p>With the last fit: {}.</p>\n", escaped(d.after.noise.says));
   }
-  out += "<table><tr><th>noise</th><th>estimate</th><th class=\"text\">unit</th></tr>\n";
+  out +=
+      "<div class=\"wide\"><table><tr><th>noise</th><th>estimate</th><th "
+      "class=\"text\">unit</th></tr>\n";
   out += coefficient_row("N, angle random walk", d.noise.angle_random_walk_deg_per_sqrt_h,
                          "deg/sqrt(h)");
   out += coefficient_row("B, bias instability", d.noise.bias_instability_deg_per_h, "deg/h");
   out += coefficient_row("K, rate random walk", d.noise.rate_random_walk_deg_per_h_per_sqrt_h,
                          "deg/h/sqrt(h)");
-  return out + "</table>\n";
+  return out + "</table></div>\n";
 }
 
 std::string bounds_section(const Diagnosis& d) {
   if (d.bounds.empty()) return "";
   std::string out =
       "<h2>Looked for and not found</h2>\n<p class=\"sub\">Each is absent, or its coefficient is "
-      "below the bound (95 %).</p>\n<table class=\"columns\"><tr><th>effect</th>"
+      "below the bound (95 %).</p>\n<div class=\"wide\"><table><tr><th>effect</th>"
       "<th>absent or below</th><th class=\"text\">unit</th></tr>\n";
   for (const Bound& bound : d.bounds) {
     out +=
         fmt::format("<tr><td>{}</td><td>{}</td><td class=\"text\">{}</td></tr>\n",
                     escaped(bound.effect), number_text(bound.absent_or_below), escaped(bound.unit));
   }
-  return out + "</table>\n";
+  return out + "</table></div>\n";
 }
 
 std::string not_testable_section(const Diagnosis& d) {

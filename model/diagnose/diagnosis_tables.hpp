@@ -8,7 +8,7 @@
 
 namespace fogbench::model {
 
-/// "3e-07", "0.012".
+/// "0.012", or that it is below 0.0001; as HTML.
 std::string p_text(double p);
 
 std::string ladder_section(const Diagnosis& diagnosis, std::string_view unit);

@@ -166,7 +166,7 @@ TEST_F(DiagnosisHtml, HoldsWhatWasFoundWithItsRivalsAndWhatWasNot) {
   EXPECT_THAT(*page_, HasSubstr("<td>+ magnetic_hysteresis_z</td>"));
   EXPECT_THAT(*page_, HasSubstr("<td>or random_walk</td>"));
   EXPECT_THAT(*page_, HasSubstr("<td>93 %</td>"));
-  EXPECT_THAT(*page_, HasSubstr("2e-07"));
+  EXPECT_THAT(*page_, HasSubstr("<td>&lt; 0.0001</td>"));
   EXPECT_THAT(*page_, HasSubstr("magnetic_hysteresis_z.width (added)"));
   EXPECT_THAT(*page_, HasSubstr("<td>magnetic_quadratic_z</td><td>0.0021</td>"));
   EXPECT_THAT(*page_, HasSubstr("magnetic_cross_xy, magnetic_cross_zx: the table has no"));
