@@ -221,7 +221,8 @@ class Work {
     } else if (!d_.missing.empty()) {
       d_.verdict = Verdict::kMissingEffect;
     }
-    d_.next_measurements = next_measurements(d_.ambiguous, d_.not_testable);
+    d_.next_measurements =
+        next_measurements({d_.table, d_.after.fitted, d_.noise, d_.ambiguous, d_.not_testable});
     d_.sentences = verdict_in_words(d_);
   }
 

@@ -12,6 +12,7 @@
 #include "config/model_file.hpp"
 #include "config/result.hpp"
 #include "model/compare.hpp"
+#include "model/diagnose/next_measurement.hpp"
 #include "model/diagnose/search.hpp"
 #include "model/table.hpp"
 
@@ -42,11 +43,6 @@ struct Unexplained {
   double p_value = 1.0;
   std::vector<std::string> depends_on;
   std::string suggestion;  ///< a formula to start from, labelled as a guess; empty: none
-};
-
-struct NextMeasurement {
-  std::vector<std::string> tells_apart;
-  std::string action;
 };
 
 struct Diagnosis {

@@ -1,95 +1,48 @@
 #include "model/diagnose/next_measurement.hpp"
 
 #include <algorithm>
-#include <string_view>
+#include <utility>
+
+#include "model/diagnose/experiments.hpp"
+#include "model/diagnose/present_run.hpp"
+#include "model/diagnose/set_choice.hpp"
+#include "model/diagnose/unseen_effects.hpp"
 
 namespace fogbench::model {
 namespace {
 
-/// An experiment that the bench can do, and the effects that it excites as nothing else does.
-struct Experiment {
-  std::string_view action;
-  std::vector<std::string_view> tells;
-};
-
-const std::vector<Experiment>& experiments() {
-  static const std::vector<Experiment> kExperiments = {
-      {"record an hour at rest (procedure static-record) and give it as --quiet, or repeat the run "
-       "on another day: a random walk does not repeat",
-       {"random_walk"}},
-      {"add a cooling branch (thermostat-steps with cooling): hysteresis turns its sign, warm-up "
-       "and drift do not",
-       {"temperature_hysteresis"}},
-      {"switch the heater off for 60 s at a constant temperature: only heater pick-up follows at "
-       "once",
-       {"heater_power"}},
-      {"heat once with the boost and once with the normal heater at the same rate: the gradient "
-       "differs, the rate does not",
-       {"temperature_gradient"}},
-      {"ramp at two different rates and look at the edges: a lag shows in the seconds after the "
-       "ramp stops",
-       {"temperature_rate", "temperature_rate_lagged", "temperature_acceleration"}},
-      {"ramp at several temperatures: only the cross term's slope changes with temperature",
-       {"temperature_rate_cross"}},
-      {"repeat the first axis at azimuth 90 deg: the Earth's rate follows the azimuth, a step does "
-       "not",
-       {"earth_rate_projection"}},
-      {"step the temperature by 1 degC: a ripple repeats, a polynomial does not",
-       {"temperature_ripple", "temperature_cubic", "temperature_quadratic"}},
-      {"average each field point in two windows, early and late: settling fades, hysteresis stays",
-       {"magnetic_settling_x", "magnetic_settling_y", "magnetic_settling_z"}},
-      {"sweep with small and with large end fields: a loop's width grows with the field, a "
-       "saturation curve is retraced",
-       {"magnetic_hysteresis_x", "magnetic_hysteresis_y", "magnetic_hysteresis_z",
-        "magnetic_saturation_x", "magnetic_saturation_y", "magnetic_saturation_z"}},
-      {"hold +300 uT and -300 uT for half an hour each: coil heating grows with time, a quadratic "
-       "term does not",
-       {"coil_heating", "magnetic_quadratic_x", "magnetic_quadratic_y", "magnetic_quadratic_z"}},
-      {"repeat the sweep at a second thermostat temperature",
-       {"magnetic_temperature_x", "magnetic_temperature_y", "magnetic_temperature_z"}},
-      {"energise both coil pairs together, at all four sign combinations",
-       {"magnetic_cross_xy", "magnetic_cross_yz", "magnetic_cross_zx"}},
-      {"repeat the first point at the end, and once run the list in reverse order: drift follows "
-       "the clock, not the set point",
-       {"drift_linear", "bias_step", "warm_up", "ambient_temperature"}},
-      {"demagnetise the shield and repeat the sweep",
-       {"magnetic_linear_x", "magnetic_linear_y", "magnetic_linear_z"}},
-  };
-  return kExperiments;
-}
+constexpr double kLeastNoise = 1e-9;  // deg/sqrt(h): keeps a perfect fit's noise finite
 
 }  // namespace
 
-std::vector<NextMeasurement> next_measurements(
-    const std::vector<std::vector<std::string>>& ambiguous,
-    const std::vector<NotTestable>& not_testable) {
+std::vector<NextMeasurement> next_measurements(const NextMeasurementInput& given) {
   std::vector<NextMeasurement> out;
-  for (const auto& set : ambiguous) {
-    for (const Experiment& experiment : experiments()) {
-      // An experiment that touches every member alike tells none of them apart, unless its text
-      // is about their difference, which it is from two members on.
-      const bool tells = std::any_of(set.begin(), set.end(), [&](const std::string& effect) {
-        return std::find(experiment.tells.begin(), experiment.tells.end(), effect) !=
-               experiment.tells.end();
-      });
-      if (tells) {
-        out.push_back({set, std::string(experiment.action)});
-        break;
-      }
-    }
+  if (given.present.rows() == 0 || (given.ambiguous.empty() && given.not_testable.empty())) {
+    return out;
   }
-  // One line for all effects that the same experiment would show.
-  for (const Experiment& experiment : experiments()) {
-    NextMeasurement next{.tells_apart = {}, .action = std::string(experiment.action)};
-    for (const NotTestable& effect : not_testable) {
-      if (effect.because.starts_with("the table has no")) continue;
-      if (std::find(experiment.tells.begin(), experiment.tells.end(), effect.effect) !=
-          experiment.tells.end()) {
-        next.tells_apart.push_back(effect.effect);
-      }
-    }
-    if (!next.tells_apart.empty()) out.push_back(std::move(next));
+  NextMeasurementInput input = given;
+  double& white = input.noise.angle_random_walk_deg_per_sqrt_h;
+  white = std::max(white, kLeastNoise);
+  const Recorded present = recorded_from(input.present);
+  std::vector<Experiment> experiments = bench_experiments(state_of(input.present));
+  for (Experiment& e : experiments) e.record = as_recorded(e.record, input.present);
+  std::vector<Experiment> with_present = experiments;
+  with_present.push_back({kRepeat, "repeat the present run", present});
+  if (auto again = first_point_again(present)) {
+    with_present.push_back(
+        {"first_point_again",
+         "repeat the present run and return to its first point at the end (field and azimuth)",
+         std::move(*again)});
   }
+  for (const auto& set : input.ambiguous) {
+    if (set.empty()) continue;
+    const auto lines = SetChoice(input, present, with_present, set).choose();
+    out.insert(out.end(), lines.begin(), lines.end());
+  }
+  const auto shown = experiments_for_unseen(input, present, experiments);
+  out.insert(out.end(), shown.begin(), shown.end());
+  const auto record = columns_to_record(input);
+  out.insert(out.end(), record.begin(), record.end());
   return out;
 }
 
