@@ -93,7 +93,11 @@ ordered_json to_json(const model::Diagnosis& d, const DiagnoseOptions& options) 
         {{"effect", b.effect}, {"absent_or_below", b.absent_or_below}, {"unit", b.unit}});
   }
   for (const model::NextMeasurement& n : d.next_measurements) {
-    next.push_back({{"tells_apart", n.tells_apart}, {"do", n.action}});
+    next.push_back(
+        {{"tells_apart", n.tells_apart},
+         {"do", n.action},
+         {"expected_sigma", n.separation > 0.0 ? ordered_json(n.separation) : ordered_json()},
+         {"bench_hours", n.hours > 0.0 ? ordered_json(n.hours) : ordered_json()}});
   }
   for (const model::LadderStep& step : d.ladder) {
     ladder.push_back({{"added", step.added.empty() ? ordered_json() : ordered_json(step.added)},

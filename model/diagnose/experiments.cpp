@@ -311,7 +311,7 @@ void add_experiments_at_rest(List& list, const BenchState& state) {
     BenchSchedule bench = warm(state, state.held_c);
     bench.record(hours * 3600.0, 180.0, "static");
     list.add(fmt::format("rest_{}h", hours),
-             fmt::format("record {} h at rest and give it as --quiet (static-record with "
+             fmt::format("record {} h at rest (static-record with "
                          "duration_s {})",
                          hours, hours * 3600),
              bench, kRest);

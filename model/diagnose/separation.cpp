@@ -24,10 +24,11 @@ struct Elementary {
   const char* effect;
   const char* signal;
 };
-constexpr std::array<Elementary, 11> kElementary = {{
+constexpr std::array<Elementary, 12> kElementary = {{
     {"temperature_linear", "temperature_c"},
     {"temperature_quadratic", "temperature_c"},
     {"temperature_rate", "temperature_rate_c_per_h"},
+    {"temperature_rate_cross", "temperature_rate_c_per_h"},
     {"temperature_gradient", "temperature_gradient_c"},
     {"magnetic_linear_x", "field_x_ut"},
     {"magnetic_linear_y", "field_y_ut"},

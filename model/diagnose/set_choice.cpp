@@ -31,10 +31,12 @@ constexpr double kByHand = 1.5;
 constexpr std::array<double, 6> kWalks = {0.0, 0.03, 0.1, 0.3, 1.0, 3.0};
 constexpr int kGridPoints = 30;
 
-/// Does the effect's column move in a run that the diagnosis would not test it in (a thermal
-/// hysteresis without a cooling branch, say)? What tells effects apart there is not to be trusted.
+/// Does an effect with a memory move in a run that the diagnosis would not test it in (a thermal
+/// hysteresis without a cooling branch, say)? Its state there is a guess, and what tells effects
+/// apart by it is not to be trusted.
 bool misleading(const Effect& effect, const std::vector<double>& inner, const Recorded& record,
                 double reference_temperature_c) {
+  if (!effect.info().has_history) return false;
   const Signals signals(record.table, reference_temperature_c);
   if (unexcited_because(effect.info(), signals).empty()) return false;
   const MatrixXd columns = effect.regressor(signals, inner);
@@ -266,6 +268,7 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
       break;
     }
     std::string text = c.experiment->action;
+    if (walk_ && c.experiment->key.starts_with("rest_")) text += " and give it as --quiet";
     if (c.times > 1) text += fmt::format(", {} times", c.times);
     text += fmt::format(": expected to tell them apart at {:.0f} sigma in {:.1f} h", c.separation,
                         c.hours());
