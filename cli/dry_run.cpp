@@ -41,13 +41,14 @@ void print_heading(const procedures::Plan& plan, const DryRunOptions& options,
              "T, degC", "H, uT", "deg/h", "+-");
 }
 
-/// The point is on disk already, and stays there when this line has been printed.
-void print_point(std::size_t number, const Point& point) {
+/// The point is on disk already, and stays there when this line has been printed. False when
+/// nobody can read it.
+bool print_point(std::size_t number, const Point& point) {
   fmt::print("{:>5}  {:>10.1f}  {:<24}{:>9}{:>9}{:>11}  {}{}\n", number, point.time_s,
              point.segment, fixed(point.temperature_c, 2), fixed(point.field_set_ut, 0),
              fixed(point.rate_deg_per_h, 4), fixed(point.rate_std_error_deg_per_h, 4),
              point.dropped == 0 ? "" : fmt::format("  ({} frames dropped)", point.dropped));
-  std::fflush(stdout);
+  return std::fflush(stdout) == 0;
 }
 
 /// The ready model for what the plan excites.
@@ -115,7 +116,7 @@ Result<ExitStatus> run_dry_run(const DryRunOptions& options) {
     ++points;
     if (options.json) return;
     progress.clear();
-    print_point(points, point);
+    if (!print_point(points, point)) engine.request_abort();
   });
   const auto summary = (*session)->run(*planned);
   progress.clear();

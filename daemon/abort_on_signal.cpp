@@ -30,6 +30,8 @@ AbortOnSignal::AbortOnSignal(procedures::RunEngine& engine) {
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // Nobody reads the output any more: a failed write must not end the process in mid-run.
+  std::signal(SIGPIPE, SIG_IGN);
   // A terminal that is closed ends the run like the others, unless nohup asked to survive it.
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);

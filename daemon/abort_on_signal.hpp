@@ -1,6 +1,6 @@
 #pragma once
 // SIGINT and SIGTERM ask the engine to abort: the bench is driven to its safe state and the record
-// says so. A second one ends the process at once.
+// says so. A second one ends the process at once. SIGPIPE is ignored from then on.
 
 #include "procedures/run_engine.hpp"
 

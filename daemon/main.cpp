@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -114,8 +115,15 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "fogbenchd: {} (see fogbenchd --help)\n", error.what());
     return static_cast<int>(ExitStatus::kUsage);
   }
-  const auto status = fogbench::daemon::run(options);
-  if (status) return static_cast<int>(ExitStatus::kDone);
-  spdlog::error(status.error().message);
-  return static_cast<int>(fogbench::config::exit_status(status.error().code));
+  // Nothing of ours throws, and the engine leaves no run without the safe state; what a library may
+  // still throw around it ends as one line.
+  try {
+    const auto status = fogbench::daemon::run(options);
+    if (status) return static_cast<int>(ExitStatus::kDone);
+    spdlog::error(status.error().message);
+    return static_cast<int>(fogbench::config::exit_status(status.error().code));
+  } catch (const std::exception& error) {
+    spdlog::error(error.what());
+    return static_cast<int>(ExitStatus::kFailed);
+  }
 }

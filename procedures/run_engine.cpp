@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <exception>
 
 #include "procedures/bench_watch.hpp"
 #include "procedures/estimate.hpp"
@@ -31,13 +32,14 @@ class RunEngine::Run {
         started_(engine.clock_.now()),
         step_started_(started_) {}
 
-  /// The error is the reason why the run ended early.
+  /// The error is the reason why the run ended early. Never throws.
   Status execute();
   /// The safe state and the end of the record. `outcome` is that of execute().
   Result<RunEnd> finish(const Status& outcome);
   std::size_t points() const { return points_; }
 
  private:
+  Status execute_steps();
   Result<StepResult> run_step(std::size_t index);
   Status pause_if_asked();
   /// Back to the block's first step, or an error when it has been tried often enough.
@@ -46,6 +48,8 @@ class RunEngine::Run {
   Status record(const Point& point);
   void enter(RunEvent event);
   void report(const std::string& says) const;
+  /// Of the end: whoever displays it must not keep the bench from its safe state.
+  void try_to_report(const std::string& says) const;
 
   RunEngine& engine_;
   const Plan& plan_;
@@ -60,6 +64,17 @@ class RunEngine::Run {
 };
 
 Status RunEngine::Run::execute() {
+  // Nothing of ours throws; an observer that cannot print may, and memory may run out.
+  try {
+    return execute_steps();
+  } catch (const std::exception& error) {
+    return Error{ErrorCode::kDevice, fmt::format("an unexpected error: {}", error.what())};
+  } catch (...) {
+    return Error{ErrorCode::kDevice, "an unexpected error without a message"};
+  }
+}
+
+Status RunEngine::Run::execute_steps() {
   const auto started = session_.start();
   if (!started) return started;
   while (step_ < plan_.steps.size()) {
@@ -177,10 +192,17 @@ void RunEngine::Run::report(const std::string& says) const {
                      remaining_.remaining(step_, Seconds{to_seconds(now - step_started_)})});
 }
 
+void RunEngine::Run::try_to_report(const std::string& says) const {
+  try {
+    report(says);
+  } catch (...) {  // the record holds what matters
+  }
+}
+
 Result<RunEnd> RunEngine::Run::finish(const Status& outcome) {
   const bool aborted = !outcome && outcome.error().code == ErrorCode::kAborted;
   enter(outcome ? RunEvent::kDone : (aborted ? RunEvent::kAbort : RunEvent::kFail));
-  report("coils to 0 A, heaters off");
+  try_to_report("coils to 0 A, heaters off");
   const auto safe = make_safe(engine_.bench_);
 
   RunEnd end;
@@ -199,7 +221,7 @@ Result<RunEnd> RunEngine::Run::finish(const Status& outcome) {
           ? RunEvent::kSafeDone
           : (end.outcome == RunOutcome::kAborted ? RunEvent::kSafeAborted : RunEvent::kSafeFailed));
   const auto recorded = engine_.recorder_.end_run(end);
-  report(end.reason);
+  try_to_report(end.reason);
   if (!outcome && outcome.error().code == ErrorCode::kStore) {
     return Error{ErrorCode::kStore, end.reason + (safe ? "; the bench is in its safe state" : "")};
   }
@@ -242,6 +264,14 @@ Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {
     return Error{ErrorCode::kUsage,
                  fmt::format("the engine is {} and cannot start a run", name_of(state_))};
   }
+  // A request is for this run only, however it ends.
+  struct Forget {
+    RunEngine& engine;
+    ~Forget() {
+      engine.abort_requested_ = false;
+      engine.pause_requested_ = false;
+    }
+  } const forget{*this};
   const auto instruments = identify_instruments();
   if (!instruments) return instruments.error();
   const auto number = recorder_.begin_run(header, *instruments);
@@ -250,8 +280,6 @@ Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {
 
   Run run(*this, plan);
   const auto end = run.finish(run.execute());
-  abort_requested_ = false;
-  pause_requested_ = false;
   if (!end) return end.error();
   return RunSummary{*number, *end, run.points()};
 }

@@ -53,6 +53,7 @@ class RunEngine {
             drivers::Operator& person, Recorder& recorder);
 
   /// Observers are called on the thread of run(), about once a second; they must not call run().
+  /// One that throws ends the run as failed, in the safe state.
   void on_progress(std::function<void(const Progress&)> observer) {
     progress_ = std::move(observer);
   }
@@ -65,7 +66,8 @@ class RunEngine {
   Result<RunSummary> run(const Plan& plan, const RunHeader& header);
 
   // Thread- and signal-safe requests; take effect at the next tick (abort) or before the next step
-  // outside an indivisible block (pause). An abort asked for before run() holds for it.
+  // outside an indivisible block (pause). One asked for before run() holds for that run, and for no
+  // later one.
   void request_abort() { abort_requested_ = true; }
   void request_pause() { pause_requested_ = true; }
   void request_resume() { pause_requested_ = false; }

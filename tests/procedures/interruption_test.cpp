@@ -227,5 +227,19 @@ TEST(Interruption, AnAbortEndsAPauseToo) {
   EXPECT_TRUE(rig.log.points.empty());
 }
 
+TEST(Interruption, ARequestForARunThatCannotBeBegunIsNotKeptForTheNext) {
+  for (const std::string dead : {"gyro.identity", "begin_run"}) {
+    Rig rig;
+    rig.plant.fails = [&](int, const std::string& name) { return name == dead; };
+    rig.log.fails = [&](const std::string& call) { return call == dead; };
+    rig.engine.request_abort();
+    rig.engine.request_pause();
+    ASSERT_FALSE(rig.run({average(3.0)})) << dead;
+    rig.plant.fails = [](int, const std::string&) { return false; };
+    rig.log.fails = [](const std::string&) { return false; };
+    EXPECT_EQ(rig.summary_of({average(3.0)}).end.outcome, RunOutcome::kCompleted) << dead;
+  }
+}
+
 }  // namespace
 }  // namespace fogbench::procedures

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "tests/procedures/engine_fixture.hpp"
 
 namespace fogbench::procedures {
@@ -142,6 +144,55 @@ TEST(SafeState, IsReachedWhateverTheRunLogRefuses) {
     EXPECT_EQ(summary.error().code, ErrorCode::kStore) << call;
     EXPECT_TRUE(rig.plant.safe()) << call;
   }
+}
+
+/// A display that cannot print, while the gyro is heated and in a field.
+void expect_safe_after(Rig& rig, const std::string& says) {
+  const auto summary = rig.run({heat(31.0), compensate(), sweep(Axis::kY, {0.0, 50.0, 100.0})});
+  ASSERT_TRUE(summary) << summary.error().message;
+  EXPECT_EQ(summary->end.outcome, RunOutcome::kFailed);
+  EXPECT_THAT(summary->end.reason, HasSubstr(says));
+  EXPECT_TRUE(summary->end.safe_state_reached);
+  ASSERT_EQ(rig.log.ends.size(), 1U);
+  EXPECT_TRUE(rig.log.ends[0].safe_state_reached);
+  // Read back, not remembered.
+  EXPECT_EQ(rig.bench.coil_horizontal->read()->measured.value, 0.0);
+  EXPECT_EQ(rig.bench.coil_vertical->read()->measured.value, 0.0);
+  EXPECT_EQ(rig.bench.thermostat->read()->mode, HeatingMode::kOff);
+  EXPECT_EQ(rig.bench.thermostat->read()->normal_power.value, 0.0);
+}
+
+TEST(SafeState, IsReachedWhenTheObserverOfPointsThrows) {
+  Rig rig;
+  bool energised = false;
+  rig.engine.on_point([&](const Point& point) {
+    if (point.field_set_ut != 50.0) return;
+    energised = rig.plant.heater_w() > 0.0 && rig.plant.current_a[1] != 0.0;
+    throw std::runtime_error("no space left on the display");
+  });
+  expect_safe_after(rig, "no space left on the display");
+  EXPECT_TRUE(energised);
+  EXPECT_EQ(rig.log.points.size(), 2U);  // on record before anyone was told
+}
+
+TEST(SafeState, IsReachedWhenTheObserverOfProgressThrowsEvenAtTheEnd) {
+  Rig rig;
+  int thrown = 0;
+  rig.engine.on_progress([&](const Progress& now) {
+    if (now.step < 2) return;
+    ++thrown;
+    throw 42;  // not even an exception class
+  });
+  expect_safe_after(rig, "an unexpected error");
+  EXPECT_EQ(thrown, 3);  // in the step, when it stops, and when it has ended
+}
+
+TEST(SafeState, AnEngineRunsAgainAfterAnObserverThrew) {
+  Rig rig;
+  rig.engine.on_point([](const Point&) { throw std::runtime_error("once"); });
+  EXPECT_EQ(rig.summary_of({average(3.0)}).end.outcome, RunOutcome::kFailed);
+  rig.engine.on_point({});
+  EXPECT_EQ(rig.summary_of({average(3.0)}).end.outcome, RunOutcome::kCompleted);
 }
 
 TEST(SafeState, ARunThatCannotBeBegunTouchesNothing) {

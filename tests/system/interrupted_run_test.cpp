@@ -1,6 +1,7 @@
 // Only a real process can be killed: that no moment loses a printed point or breaks the run log,
 // and that a signal, a full disk or an unwritable store end in one line and the safe state.
 
+#include <fcntl.h>
 #include <linux/capability.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <functional>
 #include <random>
 #include <sstream>
 #include <thread>
@@ -128,6 +130,26 @@ TEST_F(FogbenchTest, TheDaemonAbortsOnASignalToo) {
   const Finished done = process.wait(30s);
   EXPECT_EQ(done.status, 4) << done.err;
   EXPECT_EQ(json({"runs", "--store", store(), "--json"})["runs"][0]["outcome"], "aborted");
+}
+
+TEST_F(FogbenchTest, OutputThatNobodyCanReadAbortsToTheSafeState) {
+  const auto to_a_full_disk = [] { dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO); };
+  const auto to_a_closed_pipe = [] {
+    int ends[2];
+    if (pipe(ends) != 0) _exit(126);
+    close(ends[0]);
+    dup2(ends[1], STDOUT_FILENO);
+  };
+  for (const std::function<void()>& output :
+       {std::function<void()>(to_a_full_disk), std::function<void()>(to_a_closed_pipe)}) {
+    const Finished done = support::run(dry_run(kQuickSweep), {{}, output});
+    expect_refused(done, 4, "could not be written to standard output");
+    const auto runs = json({"runs", "--store", store(), "--json"})["runs"];
+    EXPECT_EQ(runs.back()["outcome"], "aborted");
+    const auto shown = json({"show", runs.back()["run"].dump(), "--store", store(), "--json"});
+    EXPECT_EQ(shown["safe_state_reached"], true);
+    EXPECT_EQ(shown["measured"].size(), 1U);
+  }
 }
 
 TEST_F(FogbenchTest, AFullDiskIsOneLineAndTheStoreStaysReadable) {
