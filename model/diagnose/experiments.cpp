@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <functional>
+#include <array>
+#include <span>
+#include <utility>
 
 namespace fogbench::model {
 namespace {
@@ -19,7 +21,7 @@ constexpr double kPlateauAverage_s = 60.0;
 constexpr double kTransient_s = 60.0;
 // The largest field and temperatures of the standard procedures.
 constexpr double kEndField_ut = 300.0;
-const std::vector<double> kSetPoints_c = {31, 35, 40, 45, 50, 55};
+constexpr std::array<double, 6> kSetPoints_c = {31, 35, 40, 45, 50, 55};
 
 std::vector<double> standard_levels() {
   std::vector<double> levels;
@@ -194,7 +196,7 @@ void add_reversed_order(List& list, const BenchState& state) {
            bench, {.field = true, .azimuth = true});
 }
 
-void add_plateaus(BenchSchedule& bench, const std::vector<double>& set_points_c, double transient_s,
+void add_plateaus(BenchSchedule& bench, std::span<const double> set_points_c, double transient_s,
                   int averages) {
   for (const double target_c : set_points_c) {
     bench.heat(Heater::kBoost, target_c);
@@ -236,7 +238,7 @@ void add_thermal_experiments(List& list, const BenchState& state) {
   }
   {
     BenchSchedule bench(state.ambient_c);
-    add_plateaus(bench, {31.0, 45.0}, kTransient_s, 3);
+    add_plateaus(bench, std::array{31.0, 45.0}, kTransient_s, 3);
     bench.cool_to(31.0, kTransient_s, "thermostat/cooling");
     list.add("short_loop",
              "heat to 45 degC and let it cool to 31 degC again, recording all the way "

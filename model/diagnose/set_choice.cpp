@@ -18,6 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr const char* kRandomWalk = "random_walk";
+constexpr const char* kExpected = ": expected to tell them apart at ";
 // Aimed at, so that nineteen measurements in twenty come out above kSeparates.
 constexpr double kAim = kSeparates + 1.645;
 // More repetitions than this are no recommendation.
@@ -270,8 +271,7 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
     std::string text = c.experiment->action;
     if (walk_ && c.experiment->key.starts_with("rest_")) text += " and give it as --quiet";
     if (c.times > 1) text += fmt::format(", {} times", c.times);
-    text += fmt::format(": expected to tell them apart at {:.0f} sigma in {:.1f} h", c.separation,
-                        c.hours());
+    text += fmt::format("{}{:.0f} sigma in {:.1f} h", kExpected, c.separation, c.hours());
     if (out.empty() && c.experiment->key != kRepeat) text += "; " + of_present(pairs);
     out.push_back({names, std::move(text), c.separation, c.hours(), c.times});
   }
@@ -289,14 +289,20 @@ std::vector<NextMeasurement> SetChoice::choose() const {
     const auto best = best_for(pairs, two);
     if (!best.empty()) {
       // One line for all rivals that the same experiment settles.
+      const auto what = [](const NextMeasurement& n) {
+        return n.action.substr(0, n.action.find(kExpected));
+      };
       const auto same = std::find_if(out.begin(), out.end(), [&](const NextMeasurement& n) {
-        return n.action == best.front().action;
+        return what(n) == what(best.front());
       });
       if (same == out.end()) {
         out.push_back(best.front());
-      } else {
-        same->tells_apart.push_back(two.back());
+        continue;
       }
+      std::vector<std::string> names = same->tells_apart;
+      names.push_back(two.back());
+      if (best.front().separation < same->separation) *same = best.front();
+      same->tells_apart = std::move(names);
       continue;
     }
     out.push_back(
