@@ -142,7 +142,9 @@ MatrixXd SetChoice::squared(const Separation& separation, const std::vector<Walk
     if (more != nullptr) noise += squared_noise_separation(span_h(*more), input_.noise, walk.noise);
     for (std::size_t a = 0; a < effects_.size(); ++a) {
       double& least = out(static_cast<Index>(a), count - 1);
-      for (const Truth& truth : truths_[a]) {
+      for (std::size_t i = 0; i < truths_[a].size(); ++i) {
+        // Blocks without a grid stand in the order of the truths: again, once.
+        const Truth truth{i, truths_[a][i].beta};
         least = std::min(least, noise + walk.separation.squared(walk_gram, a, truth));
       }
     }
@@ -158,13 +160,16 @@ void SetChoice::weigh(const std::vector<Experiment>& experiments) {
   find_truths(separation);
   std::vector<Walk> walks;
   if (walk_) {
+    // Only the truths stand against a walk, and no grid is needed.
+    for (std::size_t a = 0; a < effects_.size(); ++a) {
+      inner[a] = separation.members()[a].blocks[truths_[a].front().block].inner;
+    }
     const double squared = mimicking_walk_squared(separation);
     for (const double share : kWalks) {
       NoiseCoefficients noise = input_.noise;
       double& k = noise.rate_random_walk_deg_per_h_per_sqrt_h;
       k = std::sqrt(k * k + share * squared);
-      walks.push_back({noise,
-                       Separation(present_, input_.fitted, effects_, inner, noise, kGridPoints),
+      walks.push_back({noise, Separation(present_, input_.fitted, effects_, inner, noise, 0),
                        squared_noise_separation(span_h(present_), input_.noise, noise)});
     }
   }
@@ -281,7 +286,16 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
 std::vector<NextMeasurement> SetChoice::choose() const {
   std::vector<NextMeasurement> out;
   if (weighed_.empty()) return out;
-  out = best_for(all_pairs(), names_);
+  // What comes apart in the present data already, at the size that was fitted, is no question.
+  Pairs open = all_pairs();
+  std::erase_if(open, [&](const auto& pair) {
+    Pairs both{pair};
+    if (static_cast<std::size_t>(pair.second) < effects_.size()) {
+      both.emplace_back(pair.second, pair.first);
+    }
+    return least(present_squared_, both) >= kAim;
+  });
+  out = best_for(open.empty() ? all_pairs() : open, names_);
   if (!out.empty()) return out;
   for (Index rival = 1; rival < static_cast<Index>(names_.size()); ++rival) {
     const Pairs pairs = pairs_with(rival);
@@ -303,6 +317,14 @@ std::vector<NextMeasurement> SetChoice::choose() const {
       names.push_back(two.back());
       if (best.front().separation < same->separation) *same = best.front();
       same->tells_apart = std::move(names);
+      continue;
+    }
+    if (const double s = least(present_squared_, pairs); s >= kAim) {
+      out.push_back({two,
+                     fmt::format("repeat the present run, to make sure: at the size that was "
+                                 "fitted they come apart at {:.0f} sigma in it",
+                                 s),
+                     s, present_.hours});
       continue;
     }
     out.push_back(

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "model/diagnose/bench_schedule.hpp"
 #include "model/diagnose/separation.hpp"
@@ -265,6 +266,30 @@ TEST(NextMeasurement, NothingIsRecommendedForAnEffectFarBelowTheNoise) {
   ASSERT_THAT(next, SizeIs(1));
   EXPECT_THAT(next.front(), action("none of the"));
   EXPECT_EQ(next.front().separation, 0.0);
+}
+
+TEST(NextMeasurement, RepeatsWhereThePresentRunShouldHaveDone) {
+  // Over a day a walk hides the drift's slope, and a jump stands out of both.
+  BenchSchedule bench(21.0);
+  bench.record(24.0 * 3600.0, 600.0, "static");
+  const Case drift{bench.recorded(), {term("bias")}, term("drift_linear", {{"", 0.01}})};
+  const auto next = next_for(drift, {"drift_linear", "bias_step"});
+  ASSERT_THAT(next, Not(IsEmpty()));
+  EXPECT_THAT(next.front(), action("repeat the present run"));
+  EXPECT_THAT(next, Each(Not(action("none of the"))));
+}
+
+TEST(NextMeasurement, ThreeMembersAreToldApartPairByPairWhereNoExperimentServesAll) {
+  const Case hysteresis{sweep_z(), magnetic(),
+                        term("magnetic_hysteresis_z", {{"", 0.02}}, {{"width", 0.3}})};
+  const auto next =
+      next_for(hysteresis, {"magnetic_hysteresis_z", "magnetic_settling_z", "drift_linear"});
+  ASSERT_THAT(next, Not(IsEmpty()));
+  std::set<std::string> told;
+  for (const NextMeasurement& n : next) told.insert(n.tells_apart.begin(), n.tells_apart.end());
+  EXPECT_THAT(told,
+              UnorderedElementsAre("magnetic_hysteresis_z", "magnetic_settling_z", "drift_linear"));
+  EXPECT_THAT(next, Each(Field(&NextMeasurement::separation, Ge(3.6))));
 }
 
 TEST(NextMeasurement, ASetThatTheCatalogueCannotEvaluateGetsNoAdvice) {
