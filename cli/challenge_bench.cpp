@@ -128,6 +128,10 @@ Result<SizedChallenge> size_effects(const ChallengeDraw& draw, const ChallengeBe
     if (!points) return points.error();
     clean.set_column(column(i), difference(daemon::to_table(*points), clean));
   }
+  // Always as many runs: neither the progress on a terminal nor the time tells how many hide.
+  for (std::size_t i = count; i < kMostHidden; ++i) {
+    if (const auto idle = bench.measure(sized.scenario); !idle) return idle.error();
+  }
   for (std::size_t i = 0; i < count; ++i) {
     // Beside what the others explain too: two effects must not hide each other.
     config::ModelFile others = draw.model;

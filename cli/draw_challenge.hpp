@@ -1,6 +1,7 @@
 #pragma once
 // What the gyro of a challenge hides, and the procedure that lets an engineer find it.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -23,6 +24,8 @@ struct ChallengeDraw {
   config::ModelFile model;  ///< to start from: a bias and what the procedure excites, linear
   std::uint64_t bench_seed = 0;
 };
+
+inline constexpr std::size_t kMostHidden = 2;
 
 /// Of 40 draws, on average: 5 hide nothing, 27 one effect, 8 two effects of different kinds.
 ChallengeDraw draw_challenge(std::uint64_t seed);

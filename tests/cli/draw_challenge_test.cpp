@@ -23,10 +23,10 @@ TEST(DrawChallenge, OneSeedIsOneDraw) {
 
 TEST(DrawChallenge, HidesNothingOneOrTwoAsOftenAsItSays) {
   // 5, 27 and 8 of 40; five standard deviations of a count are 75, 105 and 90 of 2000.
-  std::size_t counts[3] = {};
+  std::size_t counts[kMostHidden + 1] = {};
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const std::size_t hidden = draw_challenge(seed).scenario.hidden.size();
-    ASSERT_LE(hidden, 2U);
+    ASSERT_LE(hidden, kMostHidden);
     ++counts[hidden];
   }
   EXPECT_NEAR(static_cast<double>(counts[0]), 250.0, 75.0);
