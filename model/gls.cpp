@@ -212,17 +212,29 @@ ResidualEvidence::ResidualEvidence(double nu, double anchor) : nu_(nu), anchor_(
   }
 }
 
-double ResidualEvidence::operator()(double residual_squares) const {
-  const double rss = std::max(residual_squares, nu_ * kLeastWhite * kLeastWhite);
-  const double log_rss = std::log(rss);
-  const double log_likelihood = -0.5 * nu_ * log_rss;
-  if (anchor_ == 0.0) return log_likelihood;
-  const double place = (log_rss - first_) / kTableStep;
-  if (place >= static_cast<double>(table_.size() - 1)) return log_likelihood;
-  if (place < 0.0) return log_likelihood + log_gamma_p(0.5 * nu_, 0.5 * rss / (anchor_ * anchor_));
+double ResidualEvidence::log_p(double log_squares) const {
+  if (anchor_ == 0.0) return 0.0;
+  const double place = (log_squares - first_) / kTableStep;
+  if (place >= static_cast<double>(table_.size() - 1)) return 0.0;
+  if (place < 0.0) return log_gamma_p(0.5 * nu_, 0.5 * std::exp(log_squares) / (anchor_ * anchor_));
   const auto i = static_cast<std::size_t>(place);
   const double part = place - static_cast<double>(i);
-  return log_likelihood + (1.0 - part) * table_[i] + part * table_[i + 1];
+  return (1.0 - part) * table_[i] + part * table_[i + 1];
+}
+
+double ResidualEvidence::operator()(double residual_squares) const {
+  const double log_squares = std::log(std::max(residual_squares, nu_ * kLeastWhite * kLeastWhite));
+  return -0.5 * nu_ * log_squares + log_p(log_squares);
+}
+
+void ResidualEvidence::change(double residual_squares, Eigen::Ref<Eigen::ArrayXf> log_ratio) const {
+  const double least = std::log(nu_ * kLeastWhite * kLeastWhite);
+  const double now = std::max(std::log(residual_squares), least);
+  const double p_now = log_p(now);
+  for (float& ratio : log_ratio) {
+    const double then = std::max(now + static_cast<double>(ratio), least);
+    ratio = static_cast<float>(-0.5 * nu_ * (then - now) + log_p(then) - p_now);
+  }
 }
 
 Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const VectorXd& y) {

@@ -61,9 +61,15 @@ class ResidualEvidence {
  public:
   ResidualEvidence(double nu, double anchor);
   double operator()(double residual_squares) const;
+  /// By how much it changes when the squares fall by the factors exp(log_ratio), many at once:
+  /// logarithms of the factors in, changes out.
+  void change(double residual_squares, Eigen::Ref<Eigen::ArrayXf> log_ratio) const;
   double nu() const { return nu_; }
 
  private:
+  /// log P of the gamma function at these squares.
+  double log_p(double log_squares) const;
+
   double nu_, anchor_;
   double first_ = 0.0;  ///< log of RSS where the table begins
   std::vector<double> table_;

@@ -75,8 +75,10 @@ std::size_t count_blocks(const Library& library) {
   return n;
 }
 
-/// Makes the block's columns orthonormal in place; false when less than kLeastLeft remains of any.
+/// Makes the block's columns orthonormal in place. A column of which the others and the base leave
+/// less than kLeastLeft drops out, and the block lives on the rest; false when none is left.
 bool orthonormalise(Eigen::Ref<MatrixXd> block, const VectorXd& lengths_before) {
+  bool alive = false;
   for (Index j = 0; j < block.cols(); ++j) {
     for (int pass = 0; pass < 2; ++pass) {
       for (Index i = 0; i < j; ++i) {
@@ -84,15 +86,14 @@ bool orthonormalise(Eigen::Ref<MatrixXd> block, const VectorXd& lengths_before) 
       }
     }
     const double left = block.col(j).norm();
-    if (!(left > kLeastLeft * lengths_before[j])) {
-      // A dependent column of a wide block drops out; the block lives on the others.
-      if (j == 0 || block.cols() <= 2) return false;
+    if (left > kLeastLeft * lengths_before[j]) {
+      block.col(j) /= left;
+      alive = true;
+    } else {
       block.col(j).setZero();
-      continue;
     }
-    block.col(j) /= left;
   }
-  return true;
+  return alive;
 }
 
 }  // namespace
@@ -276,11 +277,11 @@ Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate) cons
   return draws;
 }
 
-MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal) const {
-  const auto n_views = views_.size();
-  MatrixXd squares(static_cast<Index>(n_views), draws.count);
-  std::vector<Eigen::VectorXf> shift(n_views);
-  for (std::size_t v = 0; v < n_views; ++v) {
+MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal, Among among) const {
+  const auto n_views = static_cast<Index>(views_.size());
+  MatrixXd squares(n_views, draws.count);
+  std::vector<Eigen::VectorXf> shift(views_.size());
+  for (std::size_t v = 0; v < views_.size(); ++v) {
     auto row = squares.row(static_cast<Index>(v));
     row = draws.residuals[v].cast<double>().colwise().squaredNorm();
     if (signal.size() == 0) continue;
@@ -289,30 +290,52 @@ MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal) const {
     row.array() += s.squaredNorm();
     shift[v] = views_[v]->u.transpose() * s.cast<float>();
   }
+  // The blocks that take part, in the candidates' order.
+  std::vector<const Block*> blocks;
+  std::vector<Index> owner;
+  std::size_t at = 0;
+  for (Index c = 0; c < candidates(); ++c) {
+    const Candidate& candidate = library_.candidates[static_cast<std::size_t>(c)];
+    const bool wanted = among == Among::kAll || !candidate.shadow();
+    for (const Block& block : candidate.blocks) {
+      if (!views_[0]->alive[at++] || !wanted) continue;
+      blocks.push_back(&block);
+      owner.push_back(c);
+    }
+  }
+  const auto n_blocks = static_cast<Index>(blocks.size());
   MatrixXd out = MatrixXd::Constant(candidates(), draws.count, -1.0);
   in_parallel(static_cast<std::size_t>(draws.count), [&](std::size_t draw) {
     const auto b = static_cast<Index>(draw);
-    std::vector<double> with(n_views);
-    for (std::size_t v = 0; v < n_views; ++v) {
-      with[v] = views_[v]->log_prior + evidence_(squares(static_cast<Index>(v), b));
-    }
-    const double null_log = log_sum_exp(with);
-    std::size_t block_index = 0;
-    for (Index c = 0; c < candidates(); ++c) {
-      for (const Block& block : library_.candidates[static_cast<std::size_t>(c)].blocks) {
-        const std::size_t at = block_index++;
-        if (!views_[0]->alive[at]) continue;
-        for (std::size_t v = 0; v < n_views; ++v) {
-          double gain = 0.0;
-          for (Index j = block.first; j < block.first + block.width; ++j) {
-            const double score = static_cast<double>(draws.scores[v](j, b)) +
-                                 (shift[v].size() > 0 ? static_cast<double>(shift[v][j]) : 0.0);
-            gain += score * score;
-          }
-          with[v] = views_[v]->log_prior + evidence_(squares(static_cast<Index>(v), b) - gain);
-        }
-        out(c, b) = std::max(out(c, b), 2.0 * (log_sum_exp(with) - null_log));
+    VectorXd base(n_views);
+    Eigen::ArrayXXf with(n_blocks, n_views);
+    Eigen::ArrayXf score;
+    for (Index v = 0; v < n_views; ++v) {
+      const auto k = static_cast<std::size_t>(v);
+      const double q = std::max(squares(v, b), kLeastSquares);
+      base[v] = views_[k]->log_prior + evidence_(q);
+      score = draws.scores[k].col(b);
+      if (shift[k].size() > 0) score += shift[k].array();
+      score = score.square();
+      for (Index i = 0; i < n_blocks; ++i) {
+        const Block& block = *blocks[static_cast<std::size_t>(i)];
+        with(i, v) = block.width == 1 ? score[block.first]
+                                      : score.segment(block.first, block.width).sum();
       }
+      constexpr float kMostExplained = 1.0f - 1e-6f;  // of the squares; beyond it single precision ends
+      with.col(v) = (1.0f - (with.col(v) / static_cast<float>(q)).min(kMostExplained)).log();
+      evidence_.change(q, with.col(v));
+    }
+    // log sum exp over the views, both relative to the best view without any candidate.
+    const double top = base.maxCoeff();
+    const Eigen::ArrayXf relative = (base.array() - top).cast<float>();
+    with.rowwise() += relative.transpose();
+    const Eigen::ArrayXf most = with.rowwise().maxCoeff();
+    const Eigen::ArrayXf gained = most + (with.colwise() - most).exp().rowwise().sum().log();
+    const float null = std::log(relative.exp().sum());
+    for (Index i = 0; i < n_blocks; ++i) {
+      double& best = out(owner[static_cast<std::size_t>(i)], b);
+      best = std::max(best, 2.0 * static_cast<double>(gained[i] - null));
     }
   });
   return out;

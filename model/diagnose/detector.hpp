@@ -45,8 +45,11 @@ class Detector {
 
   /// Noise drawn from its posterior given the base, or given the base and a candidate's best block.
   Draws draw(Eigen::Index count, std::uint64_t seed, Eigen::Index with_candidate = -1) const;
-  /// candidates x draws; `signal` (rows) is added to every draw where it is not empty.
-  Eigen::MatrixXd lambdas(const Draws& draws, const Eigen::VectorXd& signal = {}) const;
+  enum class Among { kAll, kEffects };
+  /// candidates x draws, -1 where a candidate is not testable or not among those wanted; `signal`
+  /// (rows) is added to every draw where it is not empty.
+  Eigen::MatrixXd lambdas(const Draws& draws, const Eigen::VectorXd& signal = {},
+                          Among among = Among::kAll) const;
   /// What the candidate's best block contributes to the data, fitted: rows.
   Eigen::VectorXd fitted_signal(Eigen::Index candidate) const;
   struct Coefficients {

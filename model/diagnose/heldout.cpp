@@ -17,6 +17,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kFolds = 8;
+// Each fold leaves out this many blocks, far apart: one block that held a whole sweep would ask for
+// an extrapolation.
+constexpr std::size_t kBlocksPerFold = 3;
 
 struct System {
   MatrixXd x;
@@ -89,7 +92,8 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
   for (std::size_t fold = 0; fold < folds; ++fold) {
     std::vector<Index> kept, left;
     for (std::size_t i = 0; i < n; ++i) {
-      (i * folds / n == fold ? left : kept).push_back(system->complete[i]);
+      const std::size_t block = i * folds * kBlocksPerFold / n;
+      (block % folds == fold ? left : kept).push_back(system->complete[i]);
     }
     if (kept.size() < p) continue;
     MatrixXd x = system->x(kept, Eigen::all);

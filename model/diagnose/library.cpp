@@ -65,12 +65,13 @@ std::vector<double> grid_of(const InnerParameter& parameter, std::string_view ef
 }
 
 void add_grid(LibraryBuilder& builder, Candidate candidate) {
-  if (candidate.parameter) {
-    for (const double value : grid_of(*candidate.parameter, candidate.name, builder.signals())) {
-      builder.add_block(candidate, candidate.columns(value), value);
+  const std::vector<double> grid =
+      candidate.parameter ? grid_of(*candidate.parameter, candidate.name, builder.signals())
+                          : std::vector<double>{0.0};
+  for (std::size_t shape = 0; shape < candidate.shapes.size(); ++shape) {
+    for (const double value : grid) {
+      builder.add_block(candidate, candidate.shapes[shape](value), value, shape);
     }
-  } else {
-    builder.add_block(candidate, candidate.columns(0.0));
   }
   if (candidate.blocks.empty()) {
     return builder.refuse(candidate.name, "the effect is zero everywhere in these data");
@@ -92,11 +93,11 @@ void add_effect(LibraryBuilder& builder, const Effect& effect) {
   candidate.terms.push_back({.effect = id});
   candidate.units.assign(info.units.begin(), info.units.end());
   if (!info.parameters.empty()) candidate.parameter = info.parameters.front();
-  // The library outlives neither the signals nor the table that the closure refers to.
-  candidate.columns = [&effect, source = builder.source(), &signals](double inner) {
-    const std::vector<double> parameters(effect.info().parameters.empty() ? 0 : 1, inner);
-    return LibraryBuilder(source).averaged(effect.regressor(signals, parameters));
-  };
+  for (Shape& shape : shapes_of(effect, signals)) {
+    candidate.shapes.push_back([shape = std::move(shape), source = builder.source()](double inner) {
+      return LibraryBuilder(source).averaged(shape(inner));
+    });
+  }
   add_grid(builder, std::move(candidate));
 }
 
@@ -125,12 +126,12 @@ Status add_expression(LibraryBuilder& builder, const config::ModelTerm& term) {
                                          .minimum = values.front() / kUsersRange,
                                          .maximum = values.front() * kUsersRange};
   }
-  candidate.columns = [expression = *expression, values, source = builder.source(),
-                       &signals](double inner) {
+  candidate.shapes.push_back([expression = *expression, values, source = builder.source(),
+                              &signals](double inner) {
     std::vector<double> at = values;
     if (!at.empty() && at.front() > 0.0) at.front() = inner;
     return LibraryBuilder(source).averaged(expression.evaluate(signals, at));
-  };
+  });
   add_grid(builder, std::move(candidate));
   return {};
 }
@@ -165,14 +166,14 @@ Status add_changes_between_runs(LibraryBuilder& builder) {
         candidate->units.push_back(term.unit);
       }
       if (expressions.empty()) continue;
-      candidate->columns = [expressions, source = builder.source(), &signals](double) {
+      candidate->shapes.push_back([expressions, source = builder.source(), &signals](double) {
         MatrixXd out(static_cast<Eigen::Index>(signals.rows()),
                      static_cast<Eigen::Index>(expressions.size()));
         for (std::size_t i = 0; i < expressions.size(); ++i) {
           out.col(static_cast<Eigen::Index>(i)) = expressions[i].evaluate(signals, {});
         }
         return LibraryBuilder(source).averaged(std::move(out));
-      };
+      });
       add_grid(builder, std::move(*candidate));
     }
   }

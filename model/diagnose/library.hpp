@@ -5,12 +5,12 @@
 // named confidently and wrongly.
 
 #include <Eigen/Core>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/model_file.hpp"
+#include "model/diagnose/shapes.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "model/effect.hpp"
 #include "model/signals.hpp"
@@ -21,6 +21,7 @@ namespace fogbench::model {
 struct Block {
   Eigen::Index first = 0;
   Eigen::Index width = 1;
+  std::size_t shape = 0;  ///< into Candidate::shapes
   double inner = 0.0;
 };
 
@@ -34,8 +35,8 @@ struct Candidate {
   /// The gridded inner parameter; nothing: there is none.
   std::optional<InnerParameter> parameter;
   std::string parameter_name;  ///< of a user's term; catalogue effects name theirs in `parameter`
-  /// The columns at a value of the inner parameter, rows of WorkingTable. Shadows have none.
-  std::function<Eigen::MatrixXd(double)> columns;
+  /// Columns on the rows of WorkingTable, the catalogue's own shape first. Shadows have none.
+  std::vector<Shape> shapes;
   bool slow = false;  ///< acts on the scale of the whole run: a random walk may look like it
   std::vector<Block> blocks;
 

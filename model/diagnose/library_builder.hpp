@@ -19,7 +19,8 @@ class LibraryBuilder {
   /// informs the noise only.
   Eigen::MatrixXd averaged(Eigen::MatrixXd fine_columns) const;
   /// Columns on the coarse rows; all-zero and non-finite ones are left out.
-  void add_block(Candidate& candidate, const Eigen::MatrixXd& columns, double inner = 0.0);
+  void add_block(Candidate& candidate, const Eigen::MatrixXd& columns, double inner = 0.0,
+                 std::size_t shape = 0);
   /// `columns` on the fine rows.
   void add_shadow(std::string name, const Eigen::MatrixXd& fine_columns);
   /// Unless it has no block.

@@ -14,9 +14,11 @@ double least_excitation(std::string_view name) {
   if (name.starts_with("field_")) return 5.0;
   if (name == "temperature_c") return 0.5;
   if (name == "temperature_rate_c_per_h") return 1.0;
+  // Ramps of a degree a minute make hundreds; noise of a stated rate makes a few.
+  if (name == "temperature_acceleration_c_per_h2") return 30.0;
   if (name == "temperature_gradient_c") return 0.05;
   if (name == "ambient_c") return 0.2;
-  if (name == "heater_w") return 0.1;
+  if (name == "heater_w") return 0.5;
   if (name == "azimuth_deg") return 1.0;
   return 0.0;
 }

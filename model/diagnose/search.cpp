@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 // draws; a shadow convicts the leader below kOutside.
 constexpr double kRivalKept = 0.05;
 constexpr double kOutside = 0.01;
-// Rivals further behind than this are not simulated: exp(-20) of the leader's likelihood.
-constexpr double kHopeless = 40.0;
+// Rivals further behind than this are not simulated: exp(-12) of the leader's likelihood.
+constexpr double kHopeless = 24.0;
 // A slow effect is told from a random walk only below this p-value.
 constexpr double kBeyondWalk = 2e-3;
 // An effect may take this many further values of its inner parameter before what is left counts as
@@ -36,15 +36,20 @@ MatrixXd joined(const MatrixXd& a, const MatrixXd& b) {
   return out;
 }
 
-/// The columns that a found effect adds: its own, the inner parameter's tangent, further shapes.
+/// The columns that a found effect adds: its own, the inner parameter's tangent, and what its other
+/// shapes differ by: which of them is the real one is not known to the last digit, and the
+/// difference is no second effect.
 MatrixXd columns_of(const Found& found, const Candidate& candidate) {
-  MatrixXd out = candidate.columns(found.inner);
+  const Shape& shape = candidate.shapes[found.shape];
+  MatrixXd out = shape(found.inner);
   if (candidate.parameter && !candidate.instant()) {
     const double step = 1e-3 * std::abs(found.inner);
-    out = joined(out, (candidate.columns(found.inner + step) -
-                       candidate.columns(found.inner - step)) / (2.0 * step));
+    out = joined(out, (shape(found.inner + step) - shape(found.inner - step)) / (2.0 * step));
   }
-  for (const double more : found.more_inner) out = joined(out, candidate.columns(more));
+  for (std::size_t other = 0; other < candidate.shapes.size(); ++other) {
+    if (other != found.shape) out = joined(out, candidate.shapes[other](found.inner));
+  }
+  for (const Block& more : found.more) out = joined(out, candidate.shapes[more.shape](more.inner));
   return out;
 }
 
@@ -95,6 +100,7 @@ class Search {
     if (is_found(candidate)) return false;
     found().push_back({.candidate = candidate,
                        .effect = stage.candidate(best).name,
+                       .shape = stage.detector().best_block(best).shape,
                        .inner = stage.refined(best),
                        .p_value = p,
                        .inner_at_edge = stage.at_edge(best)});
@@ -112,13 +118,13 @@ class Search {
     for (Found& f : found()) {
       const auto own = static_cast<Index>(f.candidate);
       const Candidate& candidate = stage.candidate(own);
-      if (!candidate.parameter || f.more_inner.size() >= kMostShapes) continue;
+      if ((!candidate.parameter && candidate.shapes.size() < 2) || f.more.size() >= kMostShapes) continue;
       if (!stage.detector().testable(own)) continue;
       const double lag = stage.lead()[leader] - stage.lead()[own];
       const bool as_well = own == leader || (!candidate.instant() && lag < kHopeless &&
                                              stage.plausible(own, lag, stage.effects()) > kRivalKept);
       if (!as_well) continue;
-      f.more_inner.push_back(stage.detector().best_block(own).inner);
+      f.more.push_back(stage.detector().best_block(own));
       return true;
     }
     return false;
@@ -141,9 +147,11 @@ class Search {
     if (may_change && leader != own && !is_found(static_cast<std::size_t>(leader))) {
       f = {.candidate = static_cast<std::size_t>(leader),
            .effect = stage.candidate(leader).name,
+           .shape = stage.detector().best_block(leader).shape,
            .inner = stage.refined(leader)};
       return false;
     }
+    f.shape = stage.detector().best_block(own).shape;
     f.inner = stage.refined(own);
     f.inner_at_edge = stage.at_edge(own);
     f.p_value = stage.p_value(own);

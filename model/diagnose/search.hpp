@@ -23,10 +23,11 @@ struct Rival {
 struct Found {
   std::size_t candidate = 0;  ///< in the library
   std::string effect;
-  double inner = 0.0;  ///< value of the inner parameter, where there is one
-  /// Further values of the inner parameter whose columns the effect takes too: a real loop bends
-  /// where one play operator does not, and its rest is no second effect.
-  std::vector<double> more_inner;
+  std::size_t shape = 0;  ///< into Candidate::shapes
+  double inner = 0.0;     ///< value of the inner parameter, where there is one
+  /// Further points of the effect's grid whose columns it takes too: a real loop bends where one
+  /// play operator does not, and its rest is no second effect.
+  std::vector<Block> more;
   double p_value = 1.0;
   double probability = 1.0;   ///< against its rivals
   std::vector<Rival> rivals;  ///< most probable first

@@ -40,7 +40,10 @@ Index Stage::best(const std::vector<Index>& among) const {
 
 double Stage::plausible(Index world, double lag, const std::vector<Index>& others) {
   if (noise_.count == 0) noise_ = detector_.draw(kRivalDraws, seed_ + 1, best(effects_));
-  const MatrixXd leads = calibration_.lead(detector_.lambdas(noise_, detector_.fitted_signal(world)));
+  const auto among =
+      &others == &effects_ ? Detector::Among::kEffects : Detector::Among::kAll;
+  const MatrixXd leads =
+      calibration_.lead(detector_.lambdas(noise_, detector_.fitted_signal(world), among));
   Index reached = 0;
   for (Index b = 0; b < leads.cols(); ++b) {
     double top = leads(world, b);
@@ -53,7 +56,7 @@ double Stage::plausible(Index world, double lag, const std::vector<Index>& other
 bool Stage::at_edge(Index c) const {
   const Candidate& which = candidate(c);
   if (!which.parameter || which.instant()) return false;
-  const double inner = detector_.best_block(c).inner;
+  const double inner = detector_.best_block(c).inner;  // the grid is the same for every shape
   return inner == which.blocks.front().inner || inner == which.blocks.back().inner;
 }
 
@@ -62,15 +65,17 @@ double Stage::refined(Index c) const {
   const double inner = detector_.best_block(c).inner;
   // The likelihood of an instant is a staircase: the grid is its resolution.
   if (!which.parameter || which.instant()) return inner;
-  const auto& blocks = which.blocks;
-  const auto at = static_cast<std::size_t>(
-      std::find_if(blocks.begin(), blocks.end(), [&](const Block& b) { return b.inner == inner; }) -
-      blocks.begin());
-  double low = blocks[at > 0 ? at - 1 : at].inner;
-  double high = blocks[at + 1 < blocks.size() ? at + 1 : at].inner;
+  const Block& top = detector_.best_block(c);
+  const auto neighbour = [&](std::ptrdiff_t step) {
+    const std::ptrdiff_t at = &top - which.blocks.data() + step;
+    if (at < 0 || at >= std::ssize(which.blocks)) return inner;
+    const Block& next = which.blocks[static_cast<std::size_t>(at)];
+    return next.shape == top.shape ? next.inner : inner;
+  };
+  double low = neighbour(-1), high = neighbour(+1);
   constexpr double kGolden = 0.381966;
   constexpr int kRounds = 12;
-  const auto lambda = [&](double value) { return detector_.lambda_of(which.columns(value)); };
+  const auto lambda = [&](double value) { return detector_.lambda_of(which.shapes[top.shape](value)); };
   double inside = inner, best = lambda(inside);
   for (int i = 0; i < kRounds && high > low; ++i) {
     const double trial = high - inside > inside - low ? inside + kGolden * (high - inside)

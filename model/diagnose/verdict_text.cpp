@@ -47,7 +47,7 @@ std::string effect_sentence(const MissingEffect& m) {
   if (m.found.inner_at_edge) {
     line += "; its inner parameter lies on the edge of the range and is not identified";
   }
-  if (!m.found.more_inner.empty()) {
+  if (!m.found.more.empty()) {
     line += "; one value of its inner parameter does not suffice, its shape bends";
   }
   if (!m.found.or_shape.empty()) {

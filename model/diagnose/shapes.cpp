@@ -1,0 +1,174 @@
+#include "model/diagnose/shapes.hpp"
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+namespace fogbench::model {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr const char* kRate = "temperature_rate_c_per_h";
+constexpr const char* kAcceleration = "temperature_acceleration_c_per_h2";
+constexpr double kSecondsPerHour = 3600.0;
+
+/// Elementary loops of a relaxing one, in widths, up to where exp(-width) no longer counts.
+constexpr int kLoops = 12;
+constexpr double kWidestLoop = 4.0;
+
+/// A loop that relaxes exponentially with the way that u has gone since its reversal: a sum of play
+/// operators with exponentially distributed widths (Prandtl-Ishlinskii). It starts where u starts.
+VectorXd relaxing_loop(const Signals& signals, const VectorXd& u, double width) {
+  VectorXd out = VectorXd::Zero(u.size());
+  double weights = 0.0;
+  for (int k = 0; k < kLoops; ++k) {
+    const double relative = (k + 0.5) * kWidestLoop / kLoops;
+    const double weight = std::exp(-relative);
+    weights += weight;
+    for (const Signals::RunRange& run : signals.runs()) {
+      double state = u[static_cast<Index>(run.begin)];
+      for (std::size_t i = run.begin; i < run.end; ++i) {
+        const auto row = static_cast<Index>(i);
+        state = std::min(std::max(state, u[row] - relative * width), u[row] + relative * width);
+        out[row] += weight * state;
+      }
+    }
+  }
+  return out / weights;
+}
+
+/// A magnetisation that relaxes towards the field with the way that the field has gone:
+/// dm = (u - m) |du| / width. In a steady sweep it cannot be told from a lag in time.
+VectorXd path_lag(const Signals& signals, const VectorXd& u, double width) {
+  VectorXd out(u.size());
+  for (const Signals::RunRange& run : signals.runs()) {
+    double m = u[static_cast<Index>(run.begin)], before = m;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      const auto row = static_cast<Index>(i);
+      // Exact for a u that moves evenly from the one row to the next.
+      const double step = u[row] - before;
+      const double way = std::abs(step) / width;
+      if (way > 0.0) {
+        const double behind = step / way;
+        m = u[row] - behind + (m - before + behind) * std::exp(-way);
+      }
+      before = u[row];
+      out[row] = m;
+    }
+  }
+  return out;
+}
+
+/// The windows follow each other without a gap.
+bool adjoin(const Signals& signals, Index a, Index b) {
+  constexpr double kMostGap = 0.1;  // of a window
+  const auto time = signals.signal("time_s");
+  const auto duration = signals.signal("duration_s");
+  const double between = time[b] - time[a] - 0.5 * (duration[a] + duration[b]);
+  const double shorter = std::min(duration[a], duration[b]);
+  return shorter > 0.0 && std::abs(between) < kMostGap * shorter;
+}
+
+/// Rate of each window from the temperatures at its ends, where windows follow each other without
+/// a gap; elsewhere as the table states it. A boundary's temperature is the middle of what the two
+/// windows make of it. At kinks this is closer to the mean rate than a least-squares slope.
+std::vector<double> rate_between_ends(const Signals& signals) {
+  const auto rate = signals.signal(kRate);
+  const auto temperature = signals.signal("temperature_c");
+  const auto duration = signals.signal("duration_s");
+  std::vector<double> out(rate.begin(), rate.end());
+  const auto boundary = [&](Index a, Index b) {
+    const double half_a = 0.5 * duration[a] / kSecondsPerHour;
+    const double half_b = 0.5 * duration[b] / kSecondsPerHour;
+    return 0.5 * (temperature[a] + rate[a] * half_a + temperature[b] - rate[b] * half_b);
+  };
+  for (const Signals::RunRange& run : signals.runs()) {
+    for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
+      const auto row = static_cast<Index>(i);
+      if (!adjoin(signals, row - 1, row) || !adjoin(signals, row, row + 1)) continue;
+      out[i] = (boundary(row, row + 1) - boundary(row - 1, row)) * kSecondsPerHour / duration[row];
+    }
+  }
+  return out;
+}
+
+/// Mean acceleration of each window from the rates at its ends. A boundary's rate is 2 x the slope
+/// between the two windows' means less the mean of their own rates, which is exact for a cubic.
+std::vector<double> acceleration_between_ends(const Signals& signals) {
+  const auto rate = signals.signal(kRate);
+  const auto temperature = signals.signal("temperature_c");
+  const auto time = signals.signal("time_s");
+  const auto stated = signals.signal(kAcceleration);
+  std::vector<double> out(stated.begin(), stated.end());
+  const auto boundary = [&](Index a, Index b) {
+    const double hours = (time[b] - time[a]) / kSecondsPerHour;
+    return 2.0 * (temperature[b] - temperature[a]) / hours - 0.5 * (rate[a] + rate[b]);
+  };
+  for (const Signals::RunRange& run : signals.runs()) {
+    for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
+      const auto row = static_cast<Index>(i);
+      if (!adjoin(signals, row - 1, row) || !adjoin(signals, row, row + 1)) continue;
+      const double hours = 0.5 * (time[row + 1] - time[row - 1]) / kSecondsPerHour;
+      out[i] = (boundary(row, row + 1) - boundary(row - 1, row)) / hours;
+    }
+  }
+  return out;
+}
+
+/// A table with one column made anew. Shared by the shapes that were made of it.
+struct Reconstruction {
+  Reconstruction(const Signals& from, const char* column, std::vector<double> values)
+      : table(with(from.table(), column, std::move(values))),
+        signals(table, from.reference_temperature_c()) {}
+
+  static Table with(Table table, const char* column, std::vector<double> values) {
+    table.set_column(column, std::move(values));
+    return table;
+  }
+
+  const Table table;
+  const Signals signals;
+};
+
+VectorXd field(const Signals& signals, std::string_view effect) {
+  return signals.signal(std::string("field_") + effect.back() + "_ut") / kFieldUnitUt;
+}
+
+}  // namespace
+
+std::vector<Shape> shapes_of(const Effect& effect, const Signals& signals) {
+  const auto own = [&effect](const Signals& from, double inner) {
+    const std::vector<double> parameters(effect.info().parameters.empty() ? 0 : 1, inner);
+    return effect.regressor(from, parameters);
+  };
+  std::vector<Shape> out{[own, &signals](double inner) { return own(signals, inner); }};
+  const std::string_view id = effect.info().id;
+  if (id.starts_with("magnetic_hysteresis_")) {
+    const VectorXd h = field(signals, id);
+    out.push_back([&signals, h](double width) -> MatrixXd {
+      return relaxing_loop(signals, h, width);
+    });
+    out.push_back([&signals, h](double width) -> MatrixXd { return path_lag(signals, h, width); });
+  } else if (id == "temperature_hysteresis") {
+    out.push_back([&signals](double width) -> MatrixXd {
+      return relaxing_loop(signals, signals.signal("temperature_c"), width);
+    });
+  } else if (id.starts_with("magnetic_saturation_")) {
+    out.push_back([h = field(signals, id)](double scale) -> MatrixXd {
+      return (h.array() / scale).atan().matrix();
+    });
+  } else if (id.starts_with("temperature_rate") || id == "temperature_acceleration") {
+    if (!signals.available("temperature_c") || !signals.available("time_s")) return out;
+    const bool rate = id != "temperature_acceleration";
+    const auto other = std::make_shared<const Reconstruction>(
+        signals, rate ? kRate : kAcceleration,
+        rate ? rate_between_ends(signals) : acceleration_between_ends(signals));
+    out.push_back([own, other](double inner) { return own(other->signals, inner); });
+  }
+  return out;
+}
+
+}  // namespace fogbench::model

@@ -1,0 +1,23 @@
+#pragma once
+// The same physics in other shapes. A real loop relaxes where the play operator has corners, a real
+// saturation is no hyperbolic tangent, and a temperature rate may be averaged differently from how
+// the physics acts: these shapes count as the effect itself, lest their difference from the
+// catalogue's formula be taken for a second effect, or for none of the catalogue.
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "model/effect.hpp"
+#include "model/signals.hpp"
+
+namespace fogbench::model {
+
+/// An effect's columns on the rows of the signals, at a value of its inner parameter (ignored where
+/// it has none).
+using Shape = std::function<Eigen::MatrixXd(double)>;
+
+/// The catalogue's own shape first. Both arguments must outlive the shapes.
+std::vector<Shape> shapes_of(const Effect& effect, const Signals& signals);
+
+}  // namespace fogbench::model
