@@ -21,8 +21,7 @@ double quantile(std::vector<double> values, double level) {
 
 }  // namespace
 
-Calibration::Calibration(Eigen::MatrixXd null)
-    : null_(std::move(null)), quantile_(null_.rows()) {
+Calibration::Calibration(Eigen::MatrixXd null) : null_(std::move(null)), quantile_(null_.rows()) {
   for (Index c = 0; c < null_.rows(); ++c) {
     const auto row = null_.row(c);
     quantile_[c] = quantile({row.begin(), row.end()}, kQuantile);
@@ -38,10 +37,11 @@ double Calibration::p_value(double lead_value, const std::vector<Index>& among) 
       top = std::max(top, null_(c, b) - quantile_[c]);
     }
   }
-  const auto above = std::count_if(best.begin(), best.end(),
-                                   [&](double v) { return v >= lead_value; });
+  const auto above =
+      std::count_if(best.begin(), best.end(), [&](double v) { return v >= lead_value; });
   constexpr long kEnough = 10;
-  if (above >= kEnough) return (1.0 + static_cast<double>(above)) / (1.0 + static_cast<double>(draws));
+  if (above >= kEnough)
+    return (1.0 + static_cast<double>(above)) / (1.0 + static_cast<double>(draws));
   const double start = quantile(best, kTail);
   double mean = 0.0;
   long count = 0;

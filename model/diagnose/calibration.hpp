@@ -14,9 +14,7 @@ class Calibration {
 
   /// Lambda less the candidate's own 95 % noise quantile.
   Eigen::VectorXd lead(const Eigen::VectorXd& lambda) const { return lambda - quantile_; }
-  Eigen::MatrixXd lead(const Eigen::MatrixXd& lambda) const {
-    return lambda.colwise() - quantile_;
-  }
+  Eigen::MatrixXd lead(const Eigen::MatrixXd& lambda) const { return lambda.colwise() - quantile_; }
   /// P(best lead of `among` in noise >= lead), with a shifted exponential beyond the draws.
   double p_value(double lead, const std::vector<Eigen::Index>& among) const;
 

@@ -54,8 +54,8 @@ double log_sum_exp(const std::vector<double>& values) {
 struct Detector::View {
   std::size_t shape = 0;
   std::shared_ptr<const Whitener> whitener;
-  MatrixXd q;          // basis of the whitened base
-  MatrixXf u;          // candidates' columns: whitened, projected, orthonormal within a block
+  MatrixXd q;               // basis of the whitened base
+  MatrixXf u;               // candidates' columns: whitened, projected, orthonormal within a block
   std::vector<bool> alive;  // per block, in the library's order
   VectorXd residual;
   double squares = 0.0;
@@ -159,8 +159,7 @@ Detector::Detector(const NoiseShapes& shapes, const MatrixXd& base, const Librar
   const double top_best = *std::max_element(best_likelihood.begin(), best_likelihood.end());
   std::vector<std::pair<double, std::size_t>> ranked;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const double merit =
-        std::max(null_likelihood[k] - top_null, best_likelihood[k] - top_best);
+    const double merit = std::max(null_likelihood[k] - top_null, best_likelihood[k] - top_best);
     if (merit > std::log(kLeastShape)) ranked.emplace_back(-merit, k);
   }
   std::sort(ranked.begin(), ranked.end());
@@ -182,8 +181,10 @@ Detector::Detector(const NoiseShapes& shapes, const MatrixXd& base, const Librar
       bool alive = true;
       for (std::size_t v = 0; v < views_.size(); ++v) {
         alive = alive && views_[v]->alive[block_index];
-        const double gain = data.scores[v].middleRows(blocks_of[i].first, blocks_of[i].width)
-                                .cast<double>().squaredNorm();
+        const double gain = data.scores[v]
+                                .middleRows(blocks_of[i].first, blocks_of[i].width)
+                                .cast<double>()
+                                .squaredNorm();
         with[v] = views_[v]->log_prior + evidence_(views_[v]->squares - gain);
       }
       if (!alive) continue;
@@ -202,7 +203,9 @@ const Block& Detector::best_block(Index candidate) const {
   return library_.candidates[c].blocks[best_block_[c]];
 }
 
-bool Detector::testable(Index candidate) const { return observed_[candidate] >= 0.0; }
+bool Detector::testable(Index candidate) const {
+  return observed_[candidate] >= 0.0;
+}
 
 double Detector::lambda_of(const MatrixXd& columns) const {
   std::vector<double> null(views_.size()), with(views_.size());
@@ -213,8 +216,8 @@ double Detector::lambda_of(const MatrixXd& columns) const {
     z = view.project(std::move(z));
     if (!orthonormalise(z, lengths)) return -1.0;
     null[v] = view.log_prior + evidence_(view.squares);
-    with[v] = view.log_prior +
-              evidence_(view.squares - (z.transpose() * view.residual).squaredNorm());
+    with[v] =
+        view.log_prior + evidence_(view.squares - (z.transpose() * view.residual).squaredNorm());
   }
   return 2.0 * (log_sum_exp(with) - log_sum_exp(null));
 }
@@ -227,7 +230,8 @@ Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate) cons
     if (with_candidate >= 0) {
       const Block& b = best_block(with_candidate);
       squares[v] -= (views_[v]->u.middleCols(b.first, b.width).transpose().cast<double>() *
-                     views_[v]->residual).squaredNorm();
+                     views_[v]->residual)
+                        .squaredNorm();
     }
     squares[v] = std::max(squares[v], kLeastSquares);
     weight[v] = views_[v]->log_prior + evidence_(squares[v]);
@@ -319,10 +323,11 @@ MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal, Among amo
       score = score.square();
       for (Index i = 0; i < n_blocks; ++i) {
         const Block& block = *blocks[static_cast<std::size_t>(i)];
-        with(i, v) = block.width == 1 ? score[block.first]
-                                      : score.segment(block.first, block.width).sum();
+        with(i, v) =
+            block.width == 1 ? score[block.first] : score.segment(block.first, block.width).sum();
       }
-      constexpr float kMostExplained = 1.0f - 1e-6f;  // of the squares; beyond it single precision ends
+      constexpr float kMostExplained =
+          1.0f - 1e-6f;  // of the squares; beyond it single precision ends
       with.col(v) = (1.0f - (with.col(v) / static_cast<float>(q)).min(kMostExplained)).log();
       evidence_.change(q, with.col(v));
     }
@@ -346,8 +351,9 @@ std::size_t Detector::best_view(Index candidate) const {
   std::size_t best = 0;
   double top = kMinusInfinity;
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    const double gain = (views_[v]->u.middleCols(b.first, b.width).transpose().cast<double>() *
-                         views_[v]->residual).squaredNorm();
+    const double gain =
+        (views_[v]->u.middleCols(b.first, b.width).transpose().cast<double>() * views_[v]->residual)
+            .squaredNorm();
     const double l = views_[v]->log_prior + evidence_(views_[v]->squares - gain);
     if (l > top) {
       top = l;
@@ -360,14 +366,14 @@ std::size_t Detector::best_view(Index candidate) const {
 Detector::Coefficients Detector::coefficients(Index candidate) const {
   const Block& b = best_block(candidate);
   const View& view = *views_[best_view(candidate)];
-  const MatrixXd z = view.project(view.whitener->whiten(library_.columns.middleCols(b.first, b.width)));
+  const MatrixXd z =
+      view.project(view.whitener->whiten(library_.columns.middleCols(b.first, b.width)));
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(z);
   Coefficients out;
   out.value = qr.solve(view.residual);
   const double left = (view.residual - z * out.value).squaredNorm();
-  const double white2 =
-      std::max(left / std::max(nu_ - static_cast<double>(b.width), 1.0),
-               shapes_.anchor() * shapes_.anchor());
+  const double white2 = std::max(left / std::max(nu_ - static_cast<double>(b.width), 1.0),
+                                 shapes_.anchor() * shapes_.anchor());
   const MatrixXd inverse = (z.transpose() * z).completeOrthogonalDecomposition().pseudoInverse();
   out.standard_error = (white2 * inverse.diagonal()).cwiseMax(0.0).cwiseSqrt();
   return out;
@@ -389,8 +395,8 @@ MatrixXd Detector::lambdas_at_null_noise(const Draws& draws) const {
       VectorXd best = VectorXd::Zero(draws.count);
       for (const Block& b : library_.candidates[static_cast<std::size_t>(c)].blocks) {
         if (!views_[v]->alive[block_index++]) continue;
-        const VectorXd gain = draws.scores[v].middleRows(b.first, b.width).cast<double>()
-                                  .colwise().squaredNorm();
+        const VectorXd gain =
+            draws.scores[v].middleRows(b.first, b.width).cast<double>().colwise().squaredNorm();
         best = best.cwiseMax(gain);
       }
       const Eigen::ArrayXd left = (1.0 - best.array() / squares.array()).max(1e-12);

@@ -5,10 +5,10 @@
 //   l_k(q) = log prior_k - log|L_k| - log|R_k| + log evidence(q)       noise shape k, N integrated
 //   Lambda_c = 2 max_a [ log sum_k exp l_k(q_k - |u_kc(a)' e_k|^2) - log sum_k exp l_k(q_k) ]
 //
-// e_k is the residual whitened under shape k and cleared of the base columns, q_k = |e_k|^2, u_kc an
-// orthonormal basis of the candidate's columns treated alike. Draws from the posterior of the noise
-// (not from one plugged-in estimate) calibrate Lambda; only the scores U'E are needed for them, so
-// the cost of a draw does not depend on how a candidate was made.
+// e_k is the residual whitened under shape k and cleared of the base columns, q_k = |e_k|^2, u_kc
+// an orthonormal basis of the candidate's columns treated alike. Draws from the posterior of the
+// noise (not from one plugged-in estimate) calibrate Lambda; only the scores U'E are needed for
+// them, so the cost of a draw does not depend on how a candidate was made.
 
 #include <Eigen/Core>
 #include <cstdint>

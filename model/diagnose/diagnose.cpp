@@ -22,7 +22,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kAdequacyLevel = 0.01;  // of the check with smooth functions
+// How the false-alarm rate is shared out: to the first effect, to shapes from outside, and to the
+// smooth functions of every variable.
+constexpr double kShareOfEffects = 0.8, kShareOfShapes = 0.1, kShareOfSmooth = 0.1;
 
 /// The model's terms without the numbers of an earlier fit: what is not held is fitted anew.
 config::ModelFile unfitted(config::ModelFile model) {
@@ -137,7 +139,8 @@ class Work {
     tell("searching for what is missing", 0.3);
     const SearchInput input_of_search{*library, *shapes, base->columns, base->y};
     SearchOptions search_options;
-    search_options.first_level = options_.false_alarm_rate;
+    search_options.first_level = kShareOfEffects * options_.false_alarm_rate;
+    search_options.outside_level = kShareOfShapes * options_.false_alarm_rate;
     search_options.seed = options_.seed;
     const SearchResult found = search(input_of_search, search_options);
     d_.not_testable = library->not_testable;
@@ -188,10 +191,10 @@ class Work {
       if (candidate.parameter) {
         missing.inner_name = fmt::format("{}.{}", f.effect, name_of_parameter(candidate));
       }
-      if (!f.rivals.empty()) {
-        d_.ambiguous.push_back({f.effect});
-        for (const Rival& r : f.rivals) d_.ambiguous.back().push_back(r.effect);
-      }
+      std::vector<std::string> set{f.effect};
+      for (const Rival& r : f.rivals) set.push_back(r.effect);
+      if (f.shape_leads) set.push_back(fmt::format("another effect shaped like {}", f.or_shape));
+      if (set.size() > 1) d_.ambiguous.push_back(std::move(set));
       d_.missing.push_back(std::move(missing));
     }
     d_.noise = d_.after.noise.noise;
@@ -207,7 +210,7 @@ class Work {
 
   void conclude(const SearchResult& found, const Adequacy& adequacy) {
     d_.unexplained.p_value = adequacy.p_value;
-    const bool uneven = adequacy.p_value <= kAdequacyLevel;
+    const bool uneven = adequacy.p_value <= kShareOfSmooth * options_.false_alarm_rate;
     if (uneven) d_.unexplained.depends_on = adequacy.depends_on;
     if (!found.outside_shape.empty()) {
       d_.unexplained.p_value = std::min(d_.unexplained.p_value, found.p_outside);

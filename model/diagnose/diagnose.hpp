@@ -25,7 +25,8 @@ std::string_view name_of(Verdict verdict);
 
 struct MissingEffect {
   Found found;
-  std::vector<std::string> terms;   ///< what it adds to the model: itself, but for changes between runs
+  std::vector<std::string>
+      terms;               ///< what it adds to the model: itself, but for changes between runs
   std::string inner_name;  ///< of the estimate that is its inner parameter; empty: none
   std::vector<Estimate> estimates;  ///< its coefficients and inner parameters, after the last refit
   double rms_after = 0.0;
@@ -49,7 +50,7 @@ struct Diagnosis {
   Verdict verdict = Verdict::kNothingMissing;
   double p_adequate = 1.0;  ///< of the model as it came
   double false_alarm_rate = 0.05;
-  Table table;               ///< what was analysed: complete rows, binned where there were many
+  Table table;  ///< what was analysed: complete rows, binned where there were many
   std::size_t rows_per_bin = 1;
   Comparison before;         ///< the model as it came, on `table`: fit and failing regions
   FitResult after;           ///< with the missing effects, on `table`; as before.fit if none

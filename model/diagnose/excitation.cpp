@@ -36,8 +36,8 @@ std::string unexcited_because(const EffectInfo& info, const Signals& signals) {
   };
   if (id.starts_with("magnetic_cross_")) {
     const auto a = field(id[15]), b = field(id[16]);
-    const std::string never = fmt::format("field_{}_ut and field_{}_ut are never energised together",
-                                          id[15], id[16]);
+    const std::string never =
+        fmt::format("field_{}_ut and field_{}_ut are never energised together", id[15], id[16]);
     if (!a || !b) return never;
     const double together = (a->value.array() * b->value.array()).abs().maxCoeff();
     const double most = a->value.cwiseAbs().maxCoeff() * b->value.cwiseAbs().maxCoeff();
@@ -59,7 +59,8 @@ std::string unexcited_because(const EffectInfo& info, const Signals& signals) {
   if (id == "temperature_ripple") {
     const auto t = moving_signal(signals, "temperature_c");
     std::set<long> plateaus;
-    if (t) for (const double v : t->value) plateaus.insert(std::lround(v));
+    if (t)
+      for (const double v : t->value) plateaus.insert(std::lround(v));
     if (plateaus.size() < 8) return "temperature_c takes too few values to show a period";
   }
   if (id.starts_with("magnetic_quadratic") || id.starts_with("magnetic_saturation") ||
@@ -67,7 +68,8 @@ std::string unexcited_because(const EffectInfo& info, const Signals& signals) {
     const char axis = id.back();
     const auto h = field(axis);
     std::set<long> levels;
-    if (h) for (const double v : h->value) levels.insert(std::lround(v / 10.0));
+    if (h)
+      for (const double v : h->value) levels.insert(std::lround(v / 10.0));
     if (levels.size() < 3) return fmt::format("field_{}_ut takes fewer than three levels", axis);
   }
   return {};

@@ -126,12 +126,12 @@ Status add_expression(LibraryBuilder& builder, const config::ModelTerm& term) {
                                          .minimum = values.front() / kUsersRange,
                                          .maximum = values.front() * kUsersRange};
   }
-  candidate.shapes.push_back([expression = *expression, values, source = builder.source(),
-                              &signals](double inner) {
-    std::vector<double> at = values;
-    if (!at.empty() && at.front() > 0.0) at.front() = inner;
-    return LibraryBuilder(source).averaged(expression.evaluate(signals, at));
-  });
+  candidate.shapes.push_back(
+      [expression = *expression, values, source = builder.source(), &signals](double inner) {
+        std::vector<double> at = values;
+        if (!at.empty() && at.front() > 0.0) at.front() = inner;
+        return LibraryBuilder(source).averaged(expression.evaluate(signals, at));
+      });
   add_grid(builder, std::move(candidate));
   return {};
 }
@@ -140,7 +140,8 @@ Status add_expression(LibraryBuilder& builder, const config::ModelTerm& term) {
 /// shield's history, or the coils' calibration).
 Status add_changes_between_runs(LibraryBuilder& builder) {
   const Signals& signals = builder.signals();
-  const std::size_t runs = signals.runs().size() - (builder.source().table.has_quiet_record() ? 1 : 0);
+  const std::size_t runs =
+      signals.runs().size() - (builder.source().table.has_quiet_record() ? 1 : 0);
   for (std::size_t run = 1; run < runs; ++run) {
     const std::string suffix = runs > 2 ? fmt::format("_{}", run + 1) : std::string();
     const auto since = [&](const std::string& what) {

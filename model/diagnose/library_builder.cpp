@@ -16,7 +16,8 @@ MatrixXd LibraryBuilder::averaged(MatrixXd fine_columns) const {
 void LibraryBuilder::add_block(Candidate& candidate, const MatrixXd& columns, double inner,
                                std::size_t shape) {
   if (!columns.allFinite() || columns.cwiseAbs().maxCoeff() == 0.0) return;
-  candidate.blocks.push_back({.first = count_, .width = columns.cols(), .shape = shape, .inner = inner});
+  candidate.blocks.push_back(
+      {.first = count_, .width = columns.cols(), .shape = shape, .inner = inner});
   parts_.push_back(columns);
   count_ += columns.cols();
 }

@@ -61,7 +61,8 @@ class Search {
   SearchResult run() {
     while (found().size() < options_.most_effects && step()) {
     }
-    // Each verdict rests on the other effects; a change starts the round again, a few times at most.
+    // Each verdict rests on the other effects; a change starts the round again, a few times at
+    // most.
     int changes = 0;
     for (std::size_t i = 0; i < found().size();) {
       i = judge(i, changes < kMostChanges) ? i + 1 : 0;
@@ -87,15 +88,15 @@ class Search {
   bool step() {
     if (input_.y.size() - base_with(input_, found()).cols() < kFewestFreeRows) return false;
     Stage& stage = stage_without(nullptr);
-    if (stage.effects().empty()) return false;
-    const Index best = stage.best(stage.effects());
+    if (stage.effects().empty()) return look_outside(stage);
+    const Index best = stage.leader();
     const double p = stage.p_value(best);
     result_.p_of_step.push_back(p);
     if (p > (found().empty() ? options_.first_level : options_.later_level)) {
       result_.bounds = stage.bounds();
-      return false;
+      return look_outside(stage);
     }
-    if (absorb(stage, best)) return true;
+    if (absorb(stage, best, p)) return true;
     const auto candidate = static_cast<std::size_t>(best);
     if (is_found(candidate)) return false;
     found().push_back({.candidate = candidate,
@@ -107,24 +108,40 @@ class Search {
     return true;
   }
 
+  /// No effect is left to be found: is there still a shape that none has? Always false: the end.
+  bool look_outside(const Stage& stage) {
+    if (stage.shadows().empty()) return false;
+    const Index best = stage.best(stage.shadows());
+    convict(stage.candidate(best).name, stage.p_value(best), options_.outside_level);
+    return false;
+  }
+
+  void convict(const std::string& shape, double p, double level) {
+    if (p > level || p >= result_.p_outside) return;
+    result_.outside_shape = shape;
+    result_.p_outside = p;
+  }
+
   bool is_found(std::size_t candidate) {
     return std::any_of(found().begin(), found().end(),
                        [&](const Found& f) { return f.candidate == candidate; });
   }
 
   /// Gives the rest to an effect that was found already, with another value of its inner parameter,
-  /// where that explains the rest as well as the leader does.
-  bool absorb(Stage& stage, Index leader) {
+  /// where that explains the rest as well as the leader does. A second jump is more than the effect
+  /// of one jump: something came and went.
+  bool absorb(Stage& stage, Index leader, double p) {
     for (Found& f : found()) {
       const auto own = static_cast<Index>(f.candidate);
       const Candidate& candidate = stage.candidate(own);
-      if ((!candidate.parameter && candidate.shapes.size() < 2) || f.more.size() >= kMostShapes) continue;
-      if (!stage.detector().testable(own)) continue;
+      if (f.more.size() >= kMostShapes || !stage.detector().testable(own)) continue;
       const double lag = stage.lead()[leader] - stage.lead()[own];
-      const bool as_well = own == leader || (!candidate.instant() && lag < kHopeless &&
-                                             stage.plausible(own, lag, stage.effects()) > kRivalKept);
+      const bool as_well =
+          own == leader || (!candidate.instant() && lag < kHopeless &&
+                            stage.plausible(own, lag, stage.effects()) > kRivalKept);
       if (!as_well) continue;
       f.more.push_back(stage.detector().best_block(own));
+      if (candidate.instant()) convict("a pulse or a second jump in time", p, 1.0);
       return true;
     }
     return false;
@@ -143,7 +160,7 @@ class Search {
       found().erase(found().begin() + static_cast<std::ptrdiff_t>(at));
       return false;
     }
-    const Index leader = stage.best(stage.effects());
+    const Index leader = stage.leader();
     if (may_change && leader != own && !is_found(static_cast<std::size_t>(leader))) {
       f = {.candidate = static_cast<std::size_t>(leader),
            .effect = stage.candidate(leader).name,
@@ -170,7 +187,8 @@ class Search {
         behind.emplace_back(std::max(lag, 0.0), stage.candidate(c).name);
       }
     }
-    if (stage.candidate(own).slow && f.p_value > kBeyondWalk) behind.emplace_back(0.0, "random_walk");
+    if (stage.candidate(own).slow && f.p_value > kBeyondWalk)
+      behind.emplace_back(0.0, "random_walk");
     double total = 1.0;
     for (const auto& [lag, name] : behind) total += std::exp(-0.5 * lag);
     f.probability = 1.0 / total;
@@ -188,13 +206,11 @@ class Search {
     const Index shadow = stage.best(stage.shadows());
     const double ahead = stage.lead()[shadow] - stage.lead()[own];
     const double p = ahead > 0.0 ? stage.plausible(own, ahead, stage.shadows()) : 1.0;
-    if (p < kOutside) {
-      if (p < result_.p_outside) {
-        result_.outside_shape = stage.candidate(shadow).name;
-        result_.p_outside = p;
-      }
-    } else if (ahead > 0.0 || (-ahead < kHopeless &&
-                               stage.plausible(shadow, -ahead, stage.effects()) > kRivalKept)) {
+    convict(stage.candidate(shadow).name, p, kOutside);
+    if (p <= kOutside) return;
+    f.shape_leads = ahead > 0.0;
+    if (ahead > 0.0 ||
+        (-ahead < kHopeless && stage.plausible(shadow, -ahead, stage.effects()) > kRivalKept)) {
       f.or_shape = stage.candidate(shadow).name;
     }
   }
@@ -207,8 +223,7 @@ class Search {
 
 }  // namespace
 
-MatrixXd base_with(const SearchInput& input, const std::vector<Found>& found,
-                   const Found* except) {
+MatrixXd base_with(const SearchInput& input, const std::vector<Found>& found, const Found* except) {
   MatrixXd base = input.base;
   for (const Found& f : found) {
     if (&f != except) base = joined(base, columns_of(f, input.library.candidates[f.candidate]));

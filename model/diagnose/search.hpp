@@ -1,7 +1,7 @@
 #pragma once
-// The search of a diagnosis: test, add the best candidate, test again, until nothing that is left is
-// more than noise; then judge every addition with all the others in the model: is it still needed,
-// does another candidate do as well, does a shape from outside the catalogue do better?
+// The search of a diagnosis: test, add the best candidate, test again, until nothing that is left
+// is more than noise; then judge every addition with all the others in the model: is it still
+// needed, does another candidate do as well, does a shape from outside the catalogue do better?
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -32,6 +32,7 @@ struct Found {
   double probability = 1.0;   ///< against its rivals
   std::vector<Rival> rivals;  ///< most probable first
   std::string or_shape;       ///< a shadow that cannot be excluded either
+  bool shape_leads = false;   ///< it even does better
   bool inner_at_edge = false;
 };
 
@@ -62,8 +63,9 @@ struct SearchInput {
 };
 
 struct SearchOptions {
-  double first_level = 0.05;  ///< of the first step
-  double later_level = 0.01;
+  double first_level = 0.04;     ///< of the first step
+  double later_level = 0.01;     ///< of the next ones
+  double outside_level = 0.005;  ///< of a shape from outside where no effect is left to be found
   std::size_t most_effects = 5;
   std::uint64_t seed = 20260101;
 };

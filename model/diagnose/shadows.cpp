@@ -11,8 +11,11 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kPulsePlaces = 20;  // edges that a temporary pulse may start or end at
-constexpr int kKinks = 5;         // places of a kink inside a variable's range
+constexpr int kKinks = 5;  // places of a kink inside a variable's range
+// Pulses, in shares of the run.
+constexpr double kShortestPulse = 0.04, kLongestPulse = 0.7, kPulseRatio = 1.4;
+constexpr double kRowsPerWave = 4.0, kWaveRatio = 1.12;
+constexpr double kCreepSeconds = 300.0;
 
 void add_field_shadows(LibraryBuilder& builder, const MovingSignal& h,
                        const std::optional<MovingSignal>& rate) {
@@ -52,23 +55,44 @@ void add_temperature_shadows(LibraryBuilder& builder, const MovingSignal& t) {
   builder.add_shadow("direction of heating", direction(builder.signals(), t.value));
 }
 
-/// A disturbance that came and went: what bias_step must not be confused with.
+/// A disturbance that came and went: what bias_step must not be confused with. Lengths grow by a
+/// ratio, places by a quarter of the length.
 void add_pulses(LibraryBuilder& builder) {
   const Signals& signals = builder.signals();
   Candidate pulse{.name = "a temporary pulse in time"};
   for (const Signals::RunRange& run : signals.runs()) {
-    const std::size_t length = run.end - run.begin;
-    for (std::size_t from = 1; from < kPulsePlaces; ++from) {
-      for (std::size_t to = from + 1; to < kPulsePlaces; ++to) {
+    const auto rows = static_cast<double>(run.end - run.begin);
+    for (double length = kShortestPulse; length < kLongestPulse; length *= kPulseRatio) {
+      for (double from = 0.25 * length; from + length < 1.0; from += 0.25 * length) {
         VectorXd column = VectorXd::Zero(static_cast<Index>(signals.rows()));
-        const std::size_t first = run.begin + length * from / kPulsePlaces;
-        const std::size_t last = run.begin + length * to / kPulsePlaces;
-        column.segment(static_cast<Index>(first), static_cast<Index>(last - first)).setOnes();
+        const auto first = static_cast<Index>(std::round(rows * from));
+        const auto last = static_cast<Index>(std::round(rows * (from + length)));
+        if (last <= first) continue;
+        column.segment(static_cast<Index>(run.begin) + first, last - first).setOnes();
         builder.add_block(pulse, builder.averaged(column));
       }
     }
   }
   builder.add(std::move(pulse));
+}
+
+/// Something periodic, an air conditioner say; and what creeps towards rest more slowly than any
+/// exponential does.
+void add_time_shadows(LibraryBuilder& builder, const MovingSignal& time) {
+  Candidate wave{.name = "a wave in time"};
+  const double most = static_cast<double>(builder.source().table.rows()) / kRowsPerWave;
+  for (double periods = 1.0; periods < most; periods *= kWaveRatio) {
+    Eigen::MatrixXd columns(time.value.size(), 2);
+    const Eigen::ArrayXd phase = M_PI * periods * time.scaled.array();
+    columns << phase.sin().matrix(), phase.cos().matrix();
+    builder.add_block(wave, builder.averaged(columns), periods);
+  }
+  builder.add(std::move(wave));
+  builder.add_shadow("time^2", time.scaled.array().square().matrix());
+  builder.add_shadow("root of time", time.value.cwiseMax(0.0).cwiseSqrt());
+  builder.add_shadow("logarithm of time",
+                     (1.0 + time.value.array().max(0.0) / kCreepSeconds).log().matrix());
+  add_pulses(builder);
 }
 
 }  // namespace
@@ -88,8 +112,7 @@ void add_shadows(LibraryBuilder& builder) {
     builder.add_shadow(rate->name + "^2", rate->value.array().square().matrix());
   }
   if (const auto time = moving_signal(signals, "time_since_start_s")) {
-    builder.add_shadow("time^2", time->scaled.array().square().matrix());
-    add_pulses(builder);
+    add_time_shadows(builder, *time);
   }
 }
 

@@ -148,9 +148,8 @@ std::vector<Shape> shapes_of(const Effect& effect, const Signals& signals) {
   const std::string_view id = effect.info().id;
   if (id.starts_with("magnetic_hysteresis_")) {
     const VectorXd h = field(signals, id);
-    out.push_back([&signals, h](double width) -> MatrixXd {
-      return relaxing_loop(signals, h, width);
-    });
+    out.push_back(
+        [&signals, h](double width) -> MatrixXd { return relaxing_loop(signals, h, width); });
     out.push_back([&signals, h](double width) -> MatrixXd { return path_lag(signals, h, width); });
   } else if (id == "temperature_hysteresis") {
     out.push_back([&signals](double width) -> MatrixXd {

@@ -15,8 +15,12 @@ constexpr Index kNullDraws = 499;
 constexpr Index kNullDrawsManyRows = 199;
 constexpr Index kManyRows = 400;
 constexpr Index kRivalDraws = 299;
+// exp(-3) of the likelihood: what one parameter more may gain by noise.
+constexpr double kNearlyAsWell = 6.0;
 
-Index draws_for(Index rows) { return rows > kManyRows ? kNullDrawsManyRows : kNullDraws; }
+Index draws_for(Index rows) {
+  return rows > kManyRows ? kNullDrawsManyRows : kNullDraws;
+}
 
 }  // namespace
 
@@ -38,10 +42,19 @@ Index Stage::best(const std::vector<Index>& among) const {
                            [&](Index a, Index b) { return lead_[a] < lead_[b]; });
 }
 
+Index Stage::leader() const {
+  const Index first = best(effects_);
+  if (!at_edge(first)) return first;
+  std::vector<Index> simpler;
+  for (const Index c : effects_) {
+    if (!candidate(c).parameter && lead_[first] - lead_[c] < kNearlyAsWell) simpler.push_back(c);
+  }
+  return simpler.empty() ? first : best(simpler);
+}
+
 double Stage::plausible(Index world, double lag, const std::vector<Index>& others) {
   if (noise_.count == 0) noise_ = detector_.draw(kRivalDraws, seed_ + 1, best(effects_));
-  const auto among =
-      &others == &effects_ ? Detector::Among::kEffects : Detector::Among::kAll;
+  const auto among = &others == &effects_ ? Detector::Among::kEffects : Detector::Among::kAll;
   const MatrixXd leads =
       calibration_.lead(detector_.lambdas(noise_, detector_.fitted_signal(world), among));
   Index reached = 0;
@@ -75,7 +88,9 @@ double Stage::refined(Index c) const {
   double low = neighbour(-1), high = neighbour(+1);
   constexpr double kGolden = 0.381966;
   constexpr int kRounds = 12;
-  const auto lambda = [&](double value) { return detector_.lambda_of(which.shapes[top.shape](value)); };
+  const auto lambda = [&](double value) {
+    return detector_.lambda_of(which.shapes[top.shape](value));
+  };
   double inside = inner, best = lambda(inside);
   for (int i = 0; i < kRounds && high > low; ++i) {
     const double trial = high - inside > inside - low ? inside + kGolden * (high - inside)
@@ -97,8 +112,7 @@ std::vector<Bound> Stage::bounds() const {
   std::vector<Bound> out;
   for (const Index c : effects_) {
     const auto coefficient = detector_.coefficients(c);
-    const VectorXd most =
-        coefficient.value.cwiseAbs() + kTwoSided95 * coefficient.standard_error;
+    const VectorXd most = coefficient.value.cwiseAbs() + kTwoSided95 * coefficient.standard_error;
     out.push_back({candidate(c).name, most.maxCoeff(),
                    candidate(c).units.empty() ? "" : candidate(c).units.front()});
   }

@@ -27,11 +27,18 @@ class Stage {
   const Eigen::VectorXd& lead() const { return lead_; }
   /// The one of `among` that leads; precondition: not empty.
   Eigen::Index best(const std::vector<Eigen::Index>& among) const;
-  /// Global p-value of the lead among all effects.
-  double p_value(Eigen::Index c) const { return calibration_.p_value(lead_[c], effects_); }
+  /// The effect to name: the one that leads, unless it does so only in the limit where it is a
+  /// simpler one that does nearly as well (a lag of next to nothing, a saturation that does not
+  /// bend). Precondition: there are effects.
+  Eigen::Index leader() const;
+  /// Global p-value of the lead among all effects, or among all shadows.
+  double p_value(Eigen::Index c) const {
+    return calibration_.p_value(lead_[c], candidate(c).shadow() ? shadows_ : effects_);
+  }
   /// The same of one candidate by itself.
   double p_value_alone(Eigen::Index c) const { return calibration_.p_value(lead_[c], {c}); }
-  /// P(one of `others` is ahead of `world` by at least `lag`, where `world` as fitted is the truth).
+  /// P(one of `others` is ahead of `world` by at least `lag`, where `world` as fitted is the
+  /// truth).
   double plausible(Eigen::Index world, double lag, const std::vector<Eigen::Index>& others);
   /// The best point of the candidate's inner parameter, by golden section between grid points.
   double refined(Eigen::Index c) const;

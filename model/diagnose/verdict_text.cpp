@@ -11,9 +11,10 @@ namespace {
 std::string verdict_sentence(const Diagnosis& d) {
   switch (d.verdict) {
     case Verdict::kNothingMissing:
-      return fmt::format("Nothing is missing that these data can show ({}): what is left, {:.3g} "
-                         "deg/h RMS, is noise.",
-                         probability_text(d.p_adequate), d.before.fit.rms);
+      return fmt::format(
+          "Nothing is missing that these data can show ({}): what is left, {:.3g} "
+          "deg/h RMS, is noise.",
+          probability_text(d.p_adequate), d.before.fit.rms);
     case Verdict::kMissingEffect: {
       std::vector<std::string> names;
       for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
@@ -21,9 +22,10 @@ std::string verdict_sentence(const Diagnosis& d) {
                          probability_text(d.p_adequate));
     }
     case Verdict::kAmbiguous:
-      return fmt::format("Something is missing ({}), and these data cannot say which of several "
-                         "effects it is.",
-                         probability_text(d.p_adequate));
+      return fmt::format(
+          "Something is missing ({}), and these data cannot say which of several "
+          "effects it is.",
+          probability_text(d.p_adequate));
     case Verdict::kUnexplained:
       return fmt::format(
           "Something is left that no effect of the catalogue explains ({}){}.",

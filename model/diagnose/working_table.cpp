@@ -86,8 +86,7 @@ std::vector<std::size_t> order_of(const Table& table, const std::string& observa
 }
 
 /// Rows on which the model can be evaluated.
-Result<std::vector<std::size_t>> complete_rows(const Table& table,
-                                               const config::ModelFile& model) {
+Result<std::vector<std::size_t>> complete_rows(const Table& table, const config::ModelFile& model) {
   if (!table.has(model.observable)) {
     return Error{ErrorCode::kBadInput, table.why_missing(model.observable)};
   }
@@ -116,13 +115,13 @@ Result<std::vector<std::size_t>> complete_rows(const Table& table,
   return rows;
 }
 
-/// Fills gaps with the number before (or, at the start, after) them; a column that is mostly gaps is
-/// dropped.
+/// Fills gaps with the number before (or, at the start, after) them; a column that is mostly gaps
+/// is dropped.
 void fill_gaps(Table& table) {
   for (const std::string& name : table.column_names()) {
     const auto values = table.column(name);
-    const auto filled = std::count_if(values.begin(), values.end(),
-                                      [](double v) { return std::isfinite(v); });
+    const auto filled =
+        std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
     if (filled == static_cast<std::ptrdiff_t>(values.size())) continue;
     if (static_cast<double>(filled) < kLeastFilled * static_cast<double>(values.size())) {
       table.set_dropped(name, fmt::format("column {}: has a number in {} of {} rows, expected more",
@@ -130,8 +129,8 @@ void fill_gaps(Table& table) {
       continue;
     }
     std::vector<double> column(values.begin(), values.end());
-    double last = *std::find_if(column.begin(), column.end(),
-                                [](double v) { return std::isfinite(v); });
+    double last =
+        *std::find_if(column.begin(), column.end(), [](double v) { return std::isfinite(v); });
     for (double& v : column) {
       if (std::isfinite(v)) last = v;
       v = last;
@@ -140,8 +139,8 @@ void fill_gaps(Table& table) {
   }
 }
 
-/// Gives every row a centre and a duration, windows of a run never overlapping. A time that does not
-/// advance is of no use: then the rows follow each other.
+/// Gives every row a centre and a duration, windows of a run never overlapping. A time that does
+/// not advance is of no use: then the rows follow each other.
 void set_windows(Table& table) {
   const auto n = table.rows();
   std::vector<double> time(n), duration(n, 0.0);
@@ -202,7 +201,8 @@ std::vector<Bin> bins_within(const Table& table, std::size_t most) {
   std::size_t per_bin = (table.rows() + most - 1) / most;
   std::vector<Bin> bins = bins_of(table, per_bin);
   // Segments cut bins short, so that the first guess may leave too many.
-  while (bins.size() > most && per_bin < table.rows()) bins = bins_of(table, per_bin += per_bin / 4 + 1);
+  while (bins.size() > most && per_bin < table.rows())
+    bins = bins_of(table, per_bin += per_bin / 4 + 1);
   return bins;
 }
 
