@@ -1,16 +1,10 @@
 #include "model/diagnose/detector.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <atomic>
-#include <boost/random/chi_squared_distribution.hpp>
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <cmath>
 #include <limits>
 #include <mutex>
-#include <thread>
+
+#include "model/diagnose/detector_view.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -26,48 +20,7 @@ constexpr double kLeastLeft = 1e-3;
 // not kept: they cannot move any statistic.
 constexpr double kLeastShape = 1e-3;
 constexpr std::size_t kMostShapes = 32;
-constexpr double kLeastSquares = 1e-24;  // deg^2/h: keeps a perfect fit finite
 constexpr double kMinusInfinity = -std::numeric_limits<double>::infinity();
-
-/// Two workers share the items; results do not depend on who does which.
-template <class Work>
-void in_parallel(std::size_t items, Work work) {
-  std::atomic<std::size_t> next{0};
-  const auto worker = [&] {
-    for (std::size_t i = next++; i < items; i = next++) work(i);
-  };
-  std::thread other;
-  if (items > 1 && std::thread::hardware_concurrency() > 1) other = std::thread(worker);
-  worker();
-  if (other.joinable()) other.join();
-}
-
-double log_sum_exp(const std::vector<double>& values) {
-  const double top = *std::max_element(values.begin(), values.end());
-  double sum = 0.0;
-  for (const double v : values) sum += v - top > -40.0 ? std::exp(v - top) : 0.0;
-  return top + std::log(sum);
-}
-
-}  // namespace
-
-struct Detector::View {
-  std::size_t shape = 0;
-  std::shared_ptr<const Whitener> whitener;
-  MatrixXd q;               // basis of the whitened base
-  MatrixXf u;               // candidates' columns: whitened, projected, orthonormal within a block
-  std::vector<bool> alive;  // per block, in the library's order
-  VectorXd residual;
-  double squares = 0.0;
-  double log_prior = 0.0;
-
-  MatrixXd project(MatrixXd whitened) const {
-    whitened.noalias() -= q * (q.transpose() * whitened).eval();
-    return whitened;
-  }
-};
-
-namespace {
 
 std::size_t count_blocks(const Library& library) {
   std::size_t n = 0;
@@ -222,130 +175,6 @@ double Detector::lambda_of(const MatrixXd& columns) const {
   return 2.0 * (log_sum_exp(with) - log_sum_exp(null));
 }
 
-Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate) const {
-  // Posterior weights of the shapes, and what is left of the squares in each.
-  std::vector<double> squares(views_.size()), weight(views_.size());
-  for (std::size_t v = 0; v < views_.size(); ++v) {
-    squares[v] = views_[v]->squares;
-    if (with_candidate >= 0) {
-      const Block& b = best_block(with_candidate);
-      squares[v] -= (views_[v]->u.middleCols(b.first, b.width).transpose().cast<double>() *
-                     views_[v]->residual)
-                        .squaredNorm();
-    }
-    squares[v] = std::max(squares[v], kLeastSquares);
-    weight[v] = views_[v]->log_prior + evidence_(squares[v]);
-  }
-  const double total = log_sum_exp(weight);
-  for (double& w : weight) w = std::exp(w - total);
-
-  boost::random::mt19937_64 engine(seed);
-  boost::random::normal_distribution<double> normal;
-  boost::random::uniform_real_distribution<double> uniform(0.0, 1.0);
-  boost::random::chi_squared_distribution<double> chi2(std::max(nu_, 1.0));
-  const double least = shapes_.anchor() * shapes_.anchor();
-
-  std::vector<MatrixXd> made(views_.size());  // draws of each generating shape
-  std::vector<std::vector<Index>> members(views_.size());
-  std::vector<double> sizes(static_cast<std::size_t>(count));
-  MatrixXd units(base_.rows(), count);
-  for (Index b = 0; b < count; ++b) {
-    double pick = uniform(engine);
-    std::size_t v = 0;
-    while (v + 1 < weight.size() && pick > weight[v]) pick -= weight[v++];
-    members[v].push_back(b);
-    double white2 = 0.0;
-    constexpr int kTries = 1000;
-    for (int t = 0; t < kTries && white2 <= least; ++t) white2 = squares[v] / chi2(engine);
-    sizes[static_cast<std::size_t>(b)] = std::sqrt(std::max(white2, least));
-    for (Index i = 0; i < units.rows(); ++i) units(i, b) = normal(engine);
-  }
-  MatrixXd noise(base_.rows(), count);
-  in_parallel(views_.size(), [&](std::size_t v) {
-    if (members[v].empty()) return;
-    MatrixXd mine = views_[v]->whitener->colour(units(Eigen::all, members[v]));
-    for (std::size_t i = 0; i < members[v].size(); ++i) {
-      noise.col(members[v][i]) =
-          mine.col(static_cast<Index>(i)) * sizes[static_cast<std::size_t>(members[v][i])];
-    }
-  });
-
-  Draws draws;
-  draws.count = count;
-  draws.residuals.resize(views_.size());
-  draws.scores.resize(views_.size());
-  in_parallel(views_.size(), [&](std::size_t v) {
-    draws.residuals[v] = views_[v]->project(views_[v]->whitener->whiten(noise)).cast<float>();
-    draws.scores[v].noalias() = views_[v]->u.transpose() * draws.residuals[v];
-  });
-  return draws;
-}
-
-MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal, Among among) const {
-  const auto n_views = static_cast<Index>(views_.size());
-  MatrixXd squares(n_views, draws.count);
-  std::vector<Eigen::VectorXf> shift(views_.size());
-  for (std::size_t v = 0; v < views_.size(); ++v) {
-    auto row = squares.row(static_cast<Index>(v));
-    row = draws.residuals[v].cast<double>().colwise().squaredNorm();
-    if (signal.size() == 0) continue;
-    const VectorXd s = views_[v]->project(views_[v]->whitener->whiten(signal));
-    row += (2.0 * (s.cast<float>().transpose() * draws.residuals[v]).cast<double>()).matrix();
-    row.array() += s.squaredNorm();
-    shift[v] = views_[v]->u.transpose() * s.cast<float>();
-  }
-  // The blocks that take part, in the candidates' order.
-  std::vector<const Block*> blocks;
-  std::vector<Index> owner;
-  std::size_t at = 0;
-  for (Index c = 0; c < candidates(); ++c) {
-    const Candidate& candidate = library_.candidates[static_cast<std::size_t>(c)];
-    const bool wanted = among == Among::kAll || !candidate.shadow();
-    for (const Block& block : candidate.blocks) {
-      if (!views_[0]->alive[at++] || !wanted) continue;
-      blocks.push_back(&block);
-      owner.push_back(c);
-    }
-  }
-  const auto n_blocks = static_cast<Index>(blocks.size());
-  MatrixXd out = MatrixXd::Constant(candidates(), draws.count, -1.0);
-  in_parallel(static_cast<std::size_t>(draws.count), [&](std::size_t draw) {
-    const auto b = static_cast<Index>(draw);
-    VectorXd base(n_views);
-    Eigen::ArrayXXf with(n_blocks, n_views);
-    Eigen::ArrayXf score;
-    for (Index v = 0; v < n_views; ++v) {
-      const auto k = static_cast<std::size_t>(v);
-      const double q = std::max(squares(v, b), kLeastSquares);
-      base[v] = views_[k]->log_prior + evidence_(q);
-      score = draws.scores[k].col(b);
-      if (shift[k].size() > 0) score += shift[k].array();
-      score = score.square();
-      for (Index i = 0; i < n_blocks; ++i) {
-        const Block& block = *blocks[static_cast<std::size_t>(i)];
-        with(i, v) =
-            block.width == 1 ? score[block.first] : score.segment(block.first, block.width).sum();
-      }
-      constexpr float kMostExplained =
-          1.0f - 1e-6f;  // of the squares; beyond it single precision ends
-      with.col(v) = (1.0f - (with.col(v) / static_cast<float>(q)).min(kMostExplained)).log();
-      evidence_.change(q, with.col(v));
-    }
-    // log sum exp over the views, both relative to the best view without any candidate.
-    const double top = base.maxCoeff();
-    const Eigen::ArrayXf relative = (base.array() - top).cast<float>();
-    with.rowwise() += relative.transpose();
-    const Eigen::ArrayXf most = with.rowwise().maxCoeff();
-    const Eigen::ArrayXf gained = most + (with.colwise() - most).exp().rowwise().sum().log();
-    const float null = std::log(relative.exp().sum());
-    for (Index i = 0; i < n_blocks; ++i) {
-      double& best = out(owner[static_cast<std::size_t>(i)], b);
-      best = std::max(best, 2.0 * static_cast<double>(gained[i] - null));
-    }
-  });
-  return out;
-}
-
 std::size_t Detector::best_view(Index candidate) const {
   const Block& b = best_block(candidate);
   std::size_t best = 0;
@@ -377,47 +206,6 @@ Detector::Coefficients Detector::coefficients(Index candidate) const {
   const MatrixXd inverse = (z.transpose() * z).completeOrthogonalDecomposition().pseudoInverse();
   out.standard_error = (white2 * inverse.diagonal()).cwiseMax(0.0).cwiseSqrt();
   return out;
-}
-
-MatrixXd Detector::lambdas_at_null_noise(const Draws& draws) const {
-  std::vector<double> weight(views_.size());
-  for (std::size_t v = 0; v < views_.size(); ++v) {
-    weight[v] = views_[v]->log_prior + evidence_(views_[v]->squares);
-  }
-  const double total = log_sum_exp(weight);
-  MatrixXd out = MatrixXd::Zero(candidates(), draws.count);
-  for (std::size_t v = 0; v < views_.size(); ++v) {
-    const double w = std::exp(weight[v] - total);
-    if (w < 1e-4) continue;
-    const VectorXd squares = draws.residuals[v].cast<double>().colwise().squaredNorm();
-    std::size_t block_index = 0;
-    for (Index c = 0; c < candidates(); ++c) {
-      VectorXd best = VectorXd::Zero(draws.count);
-      for (const Block& b : library_.candidates[static_cast<std::size_t>(c)].blocks) {
-        if (!views_[v]->alive[block_index++]) continue;
-        const VectorXd gain =
-            draws.scores[v].middleRows(b.first, b.width).cast<double>().colwise().squaredNorm();
-        best = best.cwiseMax(gain);
-      }
-      const Eigen::ArrayXd left = (1.0 - best.array() / squares.array()).max(1e-12);
-      out.row(c) += (-w * nu_ * left.log()).matrix().transpose();
-    }
-  }
-  return out;
-}
-
-VectorXd Detector::observed_at_null_noise() const {
-  return lambdas_at_null_noise(data_as_draw());
-}
-
-Draws Detector::data_as_draw() const {
-  Draws data;
-  data.count = 1;
-  for (const auto& view : views_) {
-    data.residuals.emplace_back(view->residual.cast<float>());
-    data.scores.emplace_back(view->u.transpose() * data.residuals.back());
-  }
-  return data;
 }
 
 VectorXd Detector::fitted_signal(Index candidate) const {

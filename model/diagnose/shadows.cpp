@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "model/diagnose/library_builder.hpp"
 #include "model/diagnose/moving_signals.hpp"
@@ -13,7 +15,8 @@ using Eigen::VectorXd;
 
 constexpr int kKinks = 5;  // places of a kink inside a variable's range
 // Pulses, in shares of the run.
-constexpr double kShortestPulse = 0.04, kLongestPulse = 0.7, kPulseRatio = 1.4;
+constexpr double kShortestPulse = 0.04, kLongestPulse = 0.7, kPulseRatio = 1.25;
+constexpr double kPulseStep = 1.0 / 6.0;  // of its length
 constexpr double kRowsPerWave = 4.0, kWaveRatio = 1.12;
 constexpr double kCreepSeconds = 300.0;
 
@@ -56,18 +59,19 @@ void add_temperature_shadows(LibraryBuilder& builder, const MovingSignal& t) {
 }
 
 /// A disturbance that came and went: what bias_step must not be confused with. Lengths grow by a
-/// ratio, places by a quarter of the length.
+/// ratio, places by a part of the length: an edge that misses by a row leaves that row as it was.
 void add_pulses(LibraryBuilder& builder) {
   const Signals& signals = builder.signals();
   Candidate pulse{.name = "a temporary pulse in time"};
   for (const Signals::RunRange& run : signals.runs()) {
     const auto rows = static_cast<double>(run.end - run.begin);
+    std::set<std::pair<Index, Index>> seen;
     for (double length = kShortestPulse; length < kLongestPulse; length *= kPulseRatio) {
-      for (double from = 0.25 * length; from + length < 1.0; from += 0.25 * length) {
-        VectorXd column = VectorXd::Zero(static_cast<Index>(signals.rows()));
+      for (double from = kPulseStep * length; from + length < 1.0; from += kPulseStep * length) {
         const auto first = static_cast<Index>(std::round(rows * from));
         const auto last = static_cast<Index>(std::round(rows * (from + length)));
-        if (last <= first) continue;
+        if (last <= first || !seen.emplace(first, last).second) continue;
+        VectorXd column = VectorXd::Zero(static_cast<Index>(signals.rows()));
         column.segment(static_cast<Index>(run.begin) + first, last - first).setOnes();
         builder.add_block(pulse, builder.averaged(column));
       }
