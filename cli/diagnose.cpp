@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -152,7 +153,7 @@ void print_text(const model::Diagnosis& d, const DiagnoseOptions& options, std::
   for (const model::LadderStep& step : d.ladder) {
     ladder.add_row({step.added.empty() ? "as it came" : "+ " + step.added,
                     fmt::format("{:.3g}", step.rms), fmt::format("{:.3g}", step.heldout_rms),
-                    fmt::format("{:.3g}", d.noise_floor)});
+                    std::isfinite(d.noise_floor) ? fmt::format("{:.3g}", d.noise_floor) : "-"});
   }
   fmt::print("{}\n", ladder.text());
   if (!d.not_testable.empty()) fmt::print("Not testable with these data:\n");

@@ -48,7 +48,7 @@ svg .band { fill: var(--fail); fill-opacity: .13; }
 .joint.falling { stroke: var(--fail); stroke-dasharray: 6 3; }
 .here { fill: none; stroke: var(--ink); stroke-width: 2; }
 .legend { font-size: .875rem; display: flex; flex-wrap: wrap; gap: .25rem 1.5rem; margin: 0 0 1rem;
-          padding: 0; list-style: none; break-after: avoid; }
+          padding: 0; list-style: none; break-after: avoid; break-inside: avoid; }
 .legend svg { width: 1.75rem; height: .9rem; display: inline-block; vertical-align: -.1rem;
               margin-right: .4rem; }
 .wide { overflow-x: auto; }
@@ -85,7 +85,8 @@ footer { border-top: 1px solid var(--rule); margin-top: 2.5rem; font-size: .875r
        border: 1px solid var(--soft); border-radius: .25rem; padding: .3rem .6rem; }
 #tip td { border: 0; padding: 0 .6rem 0 0; }
 @media (max-width: 40rem) {
-  table { font-size: .875rem; } th { white-space: normal; }
+  table { font-size: .875rem; } th, td:first-child { white-space: normal; }
+  th, td { padding-right: .5rem; }
   table.ranking .text { display: none; }
   table.ladder tr { display: grid; grid-template-columns: 1fr 6rem 6rem; }
   table.ladder td { border: 0; } table.ladder th.bars { display: none; }

@@ -53,23 +53,27 @@ std::string ladder_section(const Diagnosis& d, std::string_view unit) {
     }
   }
   const double scale = largest > 0.0 ? 1.0 / largest : 0.0;
+  const bool floor_known = std::isfinite(d.noise_floor);
   std::string out = fmt::format(
       "<h2>The error as effects are added</h2>\n<ul class=\"legend\">\n"
       "<li><span class=\"bar fitted key\"></span>RMS residual of the fit</li>\n"
-      "<li><span class=\"bar heldout key\"></span>RMS on rows held out of the fit</li>\n"
-      "<li><span class=\"bar floor key\"></span>what noise alone would leave</li>\n</ul>\n"
+      "<li><span class=\"bar heldout key\"></span>RMS on rows held out of the fit</li>\n{1}</ul>\n"
       "<table class=\"ladder\"><tr><th>model</th><th>RMS{0}</th><th>held out{0}</th>"
       "<th class=\"bars\"></th></tr>\n",
-      with_unit(unit));
+      with_unit(unit),
+      floor_known ? "<li><span class=\"bar floor key\"></span>what noise alone would leave</li>\n"
+                  : "");
   for (const LadderStep& step : d.ladder) {
     out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"bars\">{}{}</td></tr>\n",
                        step.added.empty() ? "as it came" : "+ " + escaped(step.added),
                        number_text(step.rms), number_text(step.heldout_rms),
                        bar("fitted", step.rms * scale), bar("heldout", step.heldout_rms * scale));
   }
-  out +=
-      fmt::format("<tr><td>noise alone</td><td>{}</td><td></td><td class=\"bars\">{}</td></tr>\n",
-                  number_text(d.noise_floor), bar("floor", d.noise_floor * scale));
+  if (floor_known) {
+    out +=
+        fmt::format("<tr><td>noise alone</td><td>{}</td><td></td><td class=\"bars\">{}</td></tr>\n",
+                    number_text(d.noise_floor), bar("floor", d.noise_floor * scale));
+  }
   return out + "</table>\n";
 }
 

@@ -42,7 +42,7 @@ TEST(ReportHtml, HoldsTheWordsThePlotsAndTheTablesAndNothingFromOutside) {
   EXPECT_THAT(page, HasSubstr("Residual by temperature, degC"));
   EXPECT_THAT(page, HasSubstr("class=\"band\""));
   EXPECT_THAT(page, HasSubstr("<tr class=\"fails\">"));
-  EXPECT_EQ(test::markup_error(page), "");
+  EXPECT_EQ(support::markup_error(page), "");
   EXPECT_THAT(page, Not(HasSubstr("http")));
   EXPECT_THAT(page, Not(HasSubstr("src=")));
   EXPECT_THAT(page, Not(HasSubstr("nan")));
@@ -115,12 +115,12 @@ TEST(SvgPlot, DrawsTheNumbersOfBandsThatHaveRoomTheFirstBandsFirst) {
 }
 
 TEST(MarkupError, SeesWhatIsNotClosedInOrder) {
-  EXPECT_EQ(test::markup_error("<p>a<br>b</p><svg><line x=\"1\"/></svg>"), "");
-  EXPECT_NE(test::markup_error("<p><b>a</p></b>"), "");
-  EXPECT_NE(test::markup_error("<p>a"), "");
-  EXPECT_NE(test::markup_error("<p>1 < 2</p>"), "");
-  EXPECT_NE(test::markup_error("<p title=\"<b>\">a</p>"), "");
-  EXPECT_NE(test::markup_error("<script>a"), "");
+  EXPECT_EQ(support::markup_error("<p>a<br>b</p><svg><line x=\"1\"/></svg>"), "");
+  EXPECT_NE(support::markup_error("<p><b>a</p></b>"), "");
+  EXPECT_NE(support::markup_error("<p>a"), "");
+  EXPECT_NE(support::markup_error("<p>1 < 2</p>"), "");
+  EXPECT_NE(support::markup_error("<p title=\"<b>\">a</p>"), "");
+  EXPECT_NE(support::markup_error("<script>a"), "");
 }
 
 }  // namespace

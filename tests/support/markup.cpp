@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fogbench::test {
+namespace fogbench::support {
 namespace {
 
 constexpr std::array<std::string_view, 4> kVoid = {"meta", "input", "br", "link"};
@@ -55,4 +55,4 @@ std::string markup_error(const std::string& page) {
   return open.empty() ? "" : "<" + open.back() + "> is never closed";
 }
 
-}  // namespace fogbench::test
+}  // namespace fogbench::support

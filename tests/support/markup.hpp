@@ -3,9 +3,9 @@
 
 #include <string>
 
-namespace fogbench::test {
+namespace fogbench::support {
 
 /// Empty, or what is wrong first: "</p> closes <li>", "a bare '<' in text".
 std::string markup_error(const std::string& page);
 
-}  // namespace fogbench::test
+}  // namespace fogbench::support

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "tests/support/markup.hpp"
 #include "tests/system/fogbench.hpp"
 
 namespace fogbench::system_tests {
@@ -59,6 +60,20 @@ TEST_F(FogbenchTest, CompareWritesAReport) {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_THAT(text, HasSubstr("</html>"));
   EXPECT_THAT(text, HasSubstr("<svg"));
+}
+
+TEST_F(FogbenchTest, DiagnoseWritesAReportOrSaysWhyNot) {
+  const std::string page = (folder_ / "page.html").string();
+  const Finished done = fogbench(
+      {"diagnose", published("paper-thermal.csv"), "--model", "paper-thermal", "--report", page});
+  ASSERT_EQ(done.status, 0) << done.err;
+  std::ifstream file(page);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(support::markup_error(text), "");
+  EXPECT_THAT(text, HasSubstr("Residual by temperature, degC"));
+  expect_refused(fogbench({"diagnose", published("paper-thermal.csv"), "--model", "paper-thermal",
+                           "--report", (folder_ / "none" / "page.html").string()}),
+                 3, "page.html");
 }
 
 TEST_F(FogbenchTest, CompareRefusesWhatItCannotUse) {
