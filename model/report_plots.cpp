@@ -113,7 +113,7 @@ std::string residual_plots(const PlottedFits& fits) {
 }
 
 std::string plot_legend(const PlottedFits& fits) {
-  std::string out = "<ul class=\"legend\">\n";
+  std::string out;
   if (fits.after) {
     out += legend_entry("before", R"(<path class="marks before" d="M11 4h7v7h-7z"/>)",
                         "before: the model as it came");
@@ -128,7 +128,7 @@ std::string plot_legend(const PlottedFits& fits) {
     out += legend_entry("key", R"(<rect class="band" width="28" height="14"/>)",
                         "the model fails by more than noise; numbered, worst first");
   }
-  return out + "</ul>\n";
+  return out.empty() ? out : "<ul class=\"legend\">\n" + out + "</ul>\n";
 }
 
 std::string rows_json(const PlottedFits& fits) {

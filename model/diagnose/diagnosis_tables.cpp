@@ -55,14 +55,15 @@ std::string ladder_section(const Diagnosis& d, std::string_view unit) {
   const double scale = largest > 0.0 ? 1.0 / largest : 0.0;
   const bool floor_known = std::isfinite(d.noise_floor);
   std::string out = fmt::format(
-      "<h2>The error as effects are added</h2>\n<ul class=\"legend\">\n"
+      "<h2>{2}</h2>\n<ul class=\"legend\">\n"
       "<li><span class=\"bar fitted key\"></span>RMS residual of the fit</li>\n"
       "<li><span class=\"bar heldout key\"></span>RMS on rows held out of the fit</li>\n{1}</ul>\n"
       "<table class=\"ladder\"><tr><th>model</th><th>RMS{0}</th><th>held out{0}</th>"
       "<th class=\"bars\"></th></tr>\n",
       with_unit(unit),
       floor_known ? "<li><span class=\"bar floor key\"></span>what noise alone would leave</li>\n"
-                  : "");
+                  : "",
+      d.ladder.size() > 1 ? "The error as effects are added" : "The error");
   for (const LadderStep& step : d.ladder) {
     out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"bars\">{}{}</td></tr>\n",
                        step.added.empty() ? "as it came" : "+ " + escaped(step.added),
@@ -145,13 +146,18 @@ std::string noise_section(const Diagnosis& d) {
   if (!d.after.noise.says.empty()) {
     out += fmt::format("<p>With the last fit: {}.</p>\n", escaped(d.after.noise.says));
   }
+  const NoiseCoefficients& noise = d.noise;
+  const bool any = noise.angle_random_walk_deg_per_sqrt_h > 0.0 ||
+                   noise.bias_instability_deg_per_h > 0.0 ||
+                   noise.rate_random_walk_deg_per_h_per_sqrt_h > 0.0;
+  if (!any) return d.after.noise.says.empty() ? "" : out;  // independent noise has no such numbers
   out +=
       "<div class=\"wide\"><table><tr><th>noise</th><th>estimate</th><th "
       "class=\"text\">unit</th></tr>\n";
-  out += coefficient_row("N, angle random walk", d.noise.angle_random_walk_deg_per_sqrt_h,
+  out += coefficient_row("N, angle random walk", noise.angle_random_walk_deg_per_sqrt_h,
                          "deg/sqrt(h)");
-  out += coefficient_row("B, bias instability", d.noise.bias_instability_deg_per_h, "deg/h");
-  out += coefficient_row("K, rate random walk", d.noise.rate_random_walk_deg_per_h_per_sqrt_h,
+  out += coefficient_row("B, bias instability", noise.bias_instability_deg_per_h, "deg/h");
+  out += coefficient_row("K, rate random walk", noise.rate_random_walk_deg_per_h_per_sqrt_h,
                          "deg/h/sqrt(h)");
   return out + "</table></div>\n";
 }

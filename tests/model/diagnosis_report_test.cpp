@@ -200,6 +200,8 @@ TEST_F(DiagnosisHtml, OffersNoSwitchWhereNothingWasAdded) {
   EXPECT_THAT(page, HasSubstr("Nothing is missing"));
   EXPECT_THAT(page, Not(HasSubstr("<form")));
   EXPECT_THAT(page, Not(HasSubstr("noise alone</td>"))) << "it is not known";
+  EXPECT_THAT(page, Not(HasSubstr("angle random walk"))) << "nor are the noise's coefficients";
+  EXPECT_THAT(*page_, HasSubstr("<td>N, angle random walk</td><td>0.00052</td>"));
   EXPECT_THAT(page, Not(HasSubstr("nan")));
 }
 
