@@ -119,36 +119,8 @@ Detector::Detector(const NoiseShapes& shapes, const MatrixXd& base, const Librar
   if (ranked.size() > kMostShapes) ranked.resize(kMostShapes);
   for (const auto& [merit, k] : ranked) views_.push_back(all[k]);
 
-  const Draws data = data_as_draw();
   best_block_.assign(library_.candidates.size(), 0);
-  observed_ = VectorXd::Constant(candidates(), -1.0);
-  std::vector<double> base_likelihood(views_.size()), with(views_.size());
-  for (std::size_t v = 0; v < views_.size(); ++v) {
-    base_likelihood[v] = views_[v]->log_prior + evidence_(views_[v]->squares);
-  }
-  const double base_log = log_sum_exp(base_likelihood);
-  std::size_t block_index = 0;
-  for (std::size_t c = 0; c < library_.candidates.size(); ++c) {
-    const auto& blocks_of = library_.candidates[c].blocks;
-    for (std::size_t i = 0; i < blocks_of.size(); ++i, ++block_index) {
-      bool alive = true;
-      for (std::size_t v = 0; v < views_.size(); ++v) {
-        alive = alive && views_[v]->alive[block_index];
-        const double gain = data.scores[v]
-                                .middleRows(blocks_of[i].first, blocks_of[i].width)
-                                .cast<double>()
-                                .squaredNorm();
-        with[v] = views_[v]->log_prior + evidence_(views_[v]->squares - gain);
-      }
-      if (!alive) continue;
-      const double lambda = 2.0 * (log_sum_exp(with) - base_log);
-      auto& best = observed_[static_cast<Index>(c)];
-      if (lambda > best) {
-        best = lambda;
-        best_block_[c] = i;
-      }
-    }
-  }
+  observed_ = scan(data_as_draw(), {}, Among::kAll, &best_block_);
 }
 
 const Block& Detector::best_block(Index candidate) const {

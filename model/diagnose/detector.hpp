@@ -65,6 +65,17 @@ class Detector {
 
  private:
   struct View;  // one noise shape
+  /// A point of a candidate's grid that may be its best.
+  struct Contender {
+    Eigen::Index candidate;
+    const Block* block;
+  };
+  /// Those that are best under at least one noise shape: the best on the whole is one of them, or
+  /// next to it. `gain` per noise shape and column.
+  std::vector<Contender> contenders_of(const std::vector<Eigen::ArrayXf>& gain, Among among) const;
+  /// lambdas(); for a single draw, also the index of each candidate's best block.
+  Eigen::MatrixXd scan(const Draws& draws, const Eigen::VectorXd& signal, Among among,
+                       std::vector<std::size_t>* best_block) const;
   std::size_t best_view(Eigen::Index candidate) const;
   Draws data_as_draw() const;
 

@@ -13,6 +13,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+float sum_of(const Eigen::ArrayXf& gain, const Block& block) {
+  return block.width == 1 ? gain[block.first] : gain.segment(block.first, block.width).sum();
+}
+
+}  // namespace
+
 Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate) const {
   // Posterior weights of the shapes, and what is left of the squares in each.
   std::vector<double> squares(views_.size()), weight(views_.size());
@@ -73,6 +81,11 @@ Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate) cons
 }
 
 MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal, Among among) const {
+  return scan(draws, signal, among, nullptr);
+}
+
+MatrixXd Detector::scan(const Draws& draws, const VectorXd& signal, Among among,
+                        std::vector<std::size_t>* best_block) const {
   const auto n_views = static_cast<Index>(views_.size());
   MatrixXd squares(n_views, draws.count);
   std::vector<Eigen::VectorXf> shift(views_.size());
@@ -85,55 +98,82 @@ MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal, Among amo
     row.array() += s.squaredNorm();
     shift[v] = views_[v]->u.transpose() * s.cast<float>();
   }
-  // The blocks that take part, in the candidates' order.
-  std::vector<const Block*> blocks;
-  std::vector<Index> owner;
-  std::size_t at = 0;
-  for (Index c = 0; c < candidates(); ++c) {
-    const Candidate& candidate = library_.candidates[static_cast<std::size_t>(c)];
-    const bool wanted = among == Among::kAll || !candidate.shadow();
-    for (const Block& block : candidate.blocks) {
-      if (!views_[0]->alive[at++] || !wanted) continue;
-      blocks.push_back(&block);
-      owner.push_back(c);
-    }
-  }
-  const auto n_blocks = static_cast<Index>(blocks.size());
   MatrixXd out = MatrixXd::Constant(candidates(), draws.count, -1.0);
   in_parallel(static_cast<std::size_t>(draws.count), [&](std::size_t draw) {
     const auto b = static_cast<Index>(draw);
     VectorXd base(n_views);
-    Eigen::ArrayXXf with(n_blocks, n_views);
-    Eigen::ArrayXf score;
+    std::vector<Eigen::ArrayXf> gain(views_.size());  // of each column
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      const auto k = static_cast<Index>(v);
+      squares(k, b) = std::max(squares(k, b), kLeastSquares);
+      base[k] = views_[v]->log_prior + evidence_(squares(k, b));
+      gain[v] = draws.scores[v].col(b);
+      if (shift[v].size() > 0) gain[v] += shift[v].array();
+      gain[v] = gain[v].square();
+    }
+    const std::vector<Contender> contenders = contenders_of(gain, among);
+    const auto count = static_cast<Index>(contenders.size());
+    Eigen::ArrayXXf with(count, n_views);
     for (Index v = 0; v < n_views; ++v) {
-      const auto k = static_cast<std::size_t>(v);
-      const double q = std::max(squares(v, b), kLeastSquares);
-      base[v] = views_[k]->log_prior + evidence_(q);
-      score = draws.scores[k].col(b);
-      if (shift[k].size() > 0) score += shift[k].array();
-      score = score.square();
-      for (Index i = 0; i < n_blocks; ++i) {
-        const Block& block = *blocks[static_cast<std::size_t>(i)];
-        with(i, v) =
-            block.width == 1 ? score[block.first] : score.segment(block.first, block.width).sum();
+      for (Index i = 0; i < count; ++i) {
+        const Block& block = *contenders[static_cast<std::size_t>(i)].block;
+        with(i, v) = sum_of(gain[static_cast<std::size_t>(v)], block);
       }
-      constexpr float kMostExplained =
-          1.0f - 1e-6f;  // of the squares; beyond it single precision ends
-      with.col(v) = (1.0f - (with.col(v) / static_cast<float>(q)).min(kMostExplained)).log();
-      evidence_.change(q, with.col(v));
+      // Beyond this share of the squares single precision ends.
+      constexpr float kMostExplained = 1.0f - 1e-6f;
+      const auto q = static_cast<float>(squares(v, b));
+      with.col(v) = (1.0f - (with.col(v) / q).min(kMostExplained)).log();
+      evidence_.change(squares(v, b), with.col(v));
     }
     // log sum exp over the views, both relative to the best view without any candidate.
-    const double top = base.maxCoeff();
-    const Eigen::ArrayXf relative = (base.array() - top).cast<float>();
+    const Eigen::ArrayXf relative = (base.array() - base.maxCoeff()).cast<float>();
     with.rowwise() += relative.transpose();
     const Eigen::ArrayXf most = with.rowwise().maxCoeff();
     const Eigen::ArrayXf gained = most + (with.colwise() - most).exp().rowwise().sum().log();
     const float null = std::log(relative.exp().sum());
-    for (Index i = 0; i < n_blocks; ++i) {
-      double& best = out(owner[static_cast<std::size_t>(i)], b);
-      best = std::max(best, 2.0 * static_cast<double>(gained[i] - null));
+    for (Index i = 0; i < count; ++i) {
+      const Contender& contender = contenders[static_cast<std::size_t>(i)];
+      const double lambda = 2.0 * static_cast<double>(gained[i] - null);
+      double& best = out(contender.candidate, b);
+      if (lambda <= best) continue;
+      best = lambda;
+      if (best_block != nullptr) {
+        const auto c = static_cast<std::size_t>(contender.candidate);
+        (*best_block)[c] =
+            static_cast<std::size_t>(contender.block - library_.candidates[c].blocks.data());
+      }
     }
   });
+  return out;
+}
+
+std::vector<Detector::Contender> Detector::contenders_of(const std::vector<Eigen::ArrayXf>& gain,
+                                                         Among among) const {
+  std::vector<Contender> out;
+  std::size_t first_block = 0;
+  for (Index c = 0; c < candidates(); ++c) {
+    const Candidate& candidate = library_.candidates[static_cast<std::size_t>(c)];
+    const std::size_t begin = first_block;
+    first_block += candidate.blocks.size();
+    if (among == Among::kEffects && candidate.shadow()) continue;
+    const std::size_t own = out.size();
+    for (const Eigen::ArrayXf& of_view : gain) {
+      const Block* best = nullptr;
+      float most = -1.0f;
+      for (std::size_t i = 0; i < candidate.blocks.size(); ++i) {
+        if (!views_.front()->alive[begin + i]) continue;
+        const float its = sum_of(of_view, candidate.blocks[i]);
+        if (its <= most) continue;
+        most = its;
+        best = &candidate.blocks[i];
+      }
+      const auto same = [best](const Contender& other) { return other.block == best; };
+      if (best != nullptr &&
+          std::none_of(out.begin() + static_cast<std::ptrdiff_t>(own), out.end(), same)) {
+        out.push_back({c, best});
+      }
+    }
+  }
   return out;
 }
 

@@ -17,6 +17,8 @@ using Eigen::VectorXd;
 // draws; a shadow convicts the leader below kOutside.
 constexpr double kRivalKept = 0.05;
 constexpr double kOutside = 0.01;
+// A shape that is the effect itself in these data, but for rounding, is ahead by less than this.
+constexpr double kClearlyAhead = 2.0;
 // Rivals further behind than this are not simulated: exp(-12) of the leader's likelihood.
 constexpr double kHopeless = 24.0;
 // A slow effect is told from a random walk only below this p-value.
@@ -208,7 +210,7 @@ class Search {
     const double p = ahead > 0.0 ? stage.plausible(own, ahead, stage.shadows()) : 1.0;
     convict(stage.candidate(shadow).name, p, kOutside);
     if (p <= kOutside) return;
-    f.shape_leads = ahead > 0.0;
+    f.shape_leads = ahead > kClearlyAhead;
     if (ahead > 0.0 ||
         (-ahead < kHopeless && stage.plausible(shadow, -ahead, stage.effects()) > kRivalKept)) {
       f.or_shape = stage.candidate(shadow).name;

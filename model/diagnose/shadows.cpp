@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <set>
-#include <utility>
 
 #include "model/diagnose/library_builder.hpp"
 #include "model/diagnose/moving_signals.hpp"
@@ -13,10 +11,9 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kKinks = 5;  // places of a kink inside a variable's range
-// Pulses, in shares of the run.
-constexpr double kShortestPulse = 0.04, kLongestPulse = 0.7, kPulseRatio = 1.25;
-constexpr double kPulseStep = 1.0 / 6.0;  // of its length
+constexpr int kKinks = 5;              // places of a kink inside a variable's range
+constexpr double kLongestPulse = 0.5;  // of the run
+constexpr Index kShortRun = 80;
 constexpr double kRowsPerWave = 4.0, kWaveRatio = 1.12;
 constexpr double kCreepSeconds = 300.0;
 
@@ -58,23 +55,25 @@ void add_temperature_shadows(LibraryBuilder& builder, const MovingSignal& t) {
   builder.add_shadow("direction of heating", direction(builder.signals(), t.value));
 }
 
-/// A disturbance that came and went: what bias_step must not be confused with. Lengths grow by a
-/// ratio, places by a part of the length: an edge that misses by a row leaves that row as it was.
+/// A disturbance that came and went: what bias_step must not be confused with. An edge that misses
+/// by a row leaves that row as it was, which in a short run is a large part of the pulse: there
+/// every pair of edges is tried. In long ones lengths grow by a ratio, places by a part of them.
 void add_pulses(LibraryBuilder& builder) {
   const Signals& signals = builder.signals();
   Candidate pulse{.name = "a temporary pulse in time"};
+  const auto add = [&](std::size_t begin, Index from, Index length) {
+    VectorXd column = VectorXd::Zero(static_cast<Index>(signals.rows()));
+    column.segment(static_cast<Index>(begin) + from, length).setOnes();
+    builder.add_block(pulse, builder.averaged(column));
+  };
   for (const Signals::RunRange& run : signals.runs()) {
-    const auto rows = static_cast<double>(run.end - run.begin);
-    std::set<std::pair<Index, Index>> seen;
-    for (double length = kShortestPulse; length < kLongestPulse; length *= kPulseRatio) {
-      for (double from = kPulseStep * length; from + length < 1.0; from += kPulseStep * length) {
-        const auto first = static_cast<Index>(std::round(rows * from));
-        const auto last = static_cast<Index>(std::round(rows * (from + length)));
-        if (last <= first || !seen.emplace(first, last).second) continue;
-        VectorXd column = VectorXd::Zero(static_cast<Index>(signals.rows()));
-        column.segment(static_cast<Index>(run.begin) + first, last - first).setOnes();
-        builder.add_block(pulse, builder.averaged(column));
-      }
+    const auto rows = static_cast<Index>(run.end - run.begin);
+    const auto longest = static_cast<Index>(kLongestPulse * static_cast<double>(rows));
+    const bool every = rows <= kShortRun;
+    for (Index length = every ? 2 : rows / 24 + 1; length <= longest;
+         length += every ? 1 : length / 4 + 1) {
+      const Index step = every ? 1 : length / 6 + 1;
+      for (Index from = step; from + length < rows; from += step) add(run.begin, from, length);
     }
   }
   builder.add(std::move(pulse));
