@@ -1,0 +1,316 @@
+#include "tests/support/foreign_effects.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+
+namespace fogbench::tests {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+using Recipe = std::function<Series(const World&, const ForeignEffect&)>;
+
+Series mapped(std::size_t n, const std::function<double(std::size_t)>& f) {
+  Series out(n);
+  for (std::size_t i = 0; i < n; ++i) out[i] = f(i);
+  return out;
+}
+
+/// A recipe that needs only the state of the moment.
+Recipe instant(std::function<double(const World&, const ForeignEffect&, std::size_t)> f) {
+  return [f = std::move(f)](const World& w, const ForeignEffect& e) {
+    return mapped(w.size(), [&](std::size_t i) { return f(w, e, i); });
+  };
+}
+
+double excess(const World& w, std::size_t i) {
+  return w.temperature_c[i] - kLaboratory;
+}
+
+double field(const World& w, std::size_t axis, std::size_t i) {
+  return w.field_ut[axis][i] / kFieldUnit;
+}
+
+Series field(const World& w, std::size_t axis) {
+  return mapped(w.size(), [&](std::size_t i) { return field(w, axis, i); });
+}
+
+Series lagged(const Series& u, double tau_s) {
+  Series out(u.size());
+  double state = u.front();
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    state += (u[i] - state) * (1.0 - std::exp(-kGridStep / tau_s));
+    out[i] = state;
+  }
+  return out;
+}
+
+Series difference(const Series& a, const Series& b) {
+  return mapped(a.size(), [&](std::size_t i) { return a[i] - b[i]; });
+}
+
+Series sum(const Series& a, double share, const Series& b) {
+  return mapped(a.size(), [&](std::size_t i) { return a[i] + share * b[i]; });
+}
+
+/// Friction: the state is pulled along only at a distance of `width`.
+Series play(const Series& u, double width) {
+  Series out(u.size());
+  double state = 0.0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    if (u[i] - state > width) state = u[i] - width;
+    if (state - u[i] > width) state = u[i] + width;
+    out[i] = state;
+  }
+  return out;
+}
+
+/// In the manner of Duhem: per unit of travel the magnetisation relaxes towards the curve that lies
+/// `width` behind the field, with a reach of `width`.
+Series relaxing_loop(const Series& u, double width) {
+  Series out(u.size());
+  double m = 0.0, before = 0.0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const double travel = u[i] - before;
+    const double towards = u[i] - std::copysign(width, travel);
+    m += (towards - m) * (1.0 - std::exp(-std::abs(travel) / width));
+    before = u[i];
+    out[i] = m;
+  }
+  return out;
+}
+
+Series settling(const Series& u, double tau_s) {
+  return difference(u, lagged(u, tau_s));
+}
+
+Series coil_power(const World& w) {
+  return mapped(w.size(), [&](std::size_t i) {
+    return field(w, 0, i) * field(w, 0, i) + field(w, 1, i) * field(w, 1, i) +
+           field(w, 2, i) * field(w, 2, i);
+  });
+}
+
+bool other(const ForeignEffect& e) {
+  return e.shape == Shape::kOther;
+}
+
+void add_thermal(std::map<std::string, Recipe>& all) {
+  for (const auto& [name, power] :
+       {std::pair{"linear", 1}, std::pair{"quadratic", 2}, std::pair{"cubic", 3}}) {
+    all[std::string("temperature_") + name] =
+        instant([power = power](const World& w, const ForeignEffect&, std::size_t i) {
+          return std::pow(excess(w, i), power);
+        });
+  }
+  all["temperature_rate"] = [](const World& w, const ForeignEffect&) { return w.rate_c_per_h; };
+  all["temperature_rate_lagged"] = [](const World& w, const ForeignEffect& e) {
+    if (other(e)) return lagged(lagged(w.rate_c_per_h, e.inner / 2.0), e.inner / 2.0);
+    return lagged(w.rate_c_per_h, e.inner);
+  };
+  all["temperature_acceleration"] =
+      instant([](const World& w, const ForeignEffect&, std::size_t i) {
+        const double before = i > 0 ? w.rate_c_per_h[i - 1] : 0.0;
+        return (w.rate_c_per_h[i] - before) * 3600.0 / kGridStep;
+      });
+  all["temperature_rate_cross"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return excess(w, i) * w.rate_c_per_h[i];
+  });
+  all["temperature_gradient"] = [](const World& w, const ForeignEffect&) { return w.gradient_c; };
+  all["temperature_hysteresis"] = [](const World& w, const ForeignEffect& e) {
+    const Series t = mapped(w.size(), [&](std::size_t i) { return excess(w, i); });
+    if (!other(e)) return play(t, e.inner);
+    return sum(sum(play(t, 0.3 * e.inner), 1.0, play(t, e.inner)), 1.0, play(t, 2.5 * e.inner));
+  };
+  all["temperature_ripple"] = instant([](const World& w, const ForeignEffect& e, std::size_t i) {
+    return std::sin(2.0 * kPi * excess(w, i) / e.inner + e.phase);
+  });
+  all["heater_power"] = [](const World& w, const ForeignEffect&) { return w.heater_w; };
+  all["ambient_temperature"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return w.ambient_c[i] - kLaboratory;
+  });
+}
+
+void add_timed(std::map<std::string, Recipe>& all) {
+  all["bias"] = instant([](const World&, const ForeignEffect&, std::size_t) { return 1.0; });
+  all["bias_step"] = instant([](const World&, const ForeignEffect& e, std::size_t i) {
+    const double since = World::time_s(i) - e.inner;
+    if (other(e)) return std::clamp(since / 120.0, 0.0, 1.0);
+    return since >= 0.0 ? 1.0 : 0.0;
+  });
+  all["drift_linear"] = instant(
+      [](const World&, const ForeignEffect&, std::size_t i) { return World::time_s(i) / 3600.0; });
+  all["warm_up"] = instant([](const World&, const ForeignEffect& e, std::size_t i) {
+    const double t = World::time_s(i);
+    return std::exp(-t / e.inner) + (other(e) ? 0.5 * std::exp(-t / (4.0 * e.inner)) : 0.0);
+  });
+  all["earth_rate_projection"] = instant([](const World& w, const ForeignEffect& e, std::size_t i) {
+    return std::cos(w.azimuth_deg[i] * kPi / 180.0 - e.phase);
+  });
+  all["coil_heating"] = [](const World& w, const ForeignEffect& e) {
+    if (other(e)) return lagged(lagged(coil_power(w), e.inner / 2.0), e.inner / 2.0);
+    return lagged(coil_power(w), e.inner);
+  };
+}
+
+void add_magnetic(std::map<std::string, Recipe>& all) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t next = (axis + 1) % 3;
+    const std::string end{'_', "xyz"[axis]};
+    all["magnetic_linear" + end] = [=](const World& w, const ForeignEffect&) {
+      return field(w, axis);
+    };
+    all["magnetic_quadratic" + end] =
+        instant([=](const World& w, const ForeignEffect&, std::size_t i) {
+          return field(w, axis, i) * field(w, axis, i);
+        });
+    all["magnetic_cross" + end + "xyz"[next]] =
+        instant([=](const World& w, const ForeignEffect&, std::size_t i) {
+          return field(w, axis, i) * field(w, next, i);
+        });
+    all["magnetic_saturation" + end] =
+        instant([=](const World& w, const ForeignEffect& e, std::size_t i) {
+          const double x = field(w, axis, i) / e.inner;
+          return other(e) ? x / std::sqrt(1.0 + x * x) : std::tanh(x);
+        });
+    all["magnetic_hysteresis" + end] = [=](const World& w, const ForeignEffect& e) {
+      return other(e) ? relaxing_loop(field(w, axis), e.inner) : play(field(w, axis), e.inner);
+    };
+    all["magnetic_settling" + end] = [=](const World& w, const ForeignEffect& e) {
+      const Series h = field(w, axis);
+      if (!other(e)) return settling(h, e.inner);
+      return sum(settling(h, e.inner / 2.0), 0.5, settling(h, 2.0 * e.inner));
+    };
+    all["magnetic_temperature" + end] =
+        instant([=](const World& w, const ForeignEffect&, std::size_t i) {
+          return field(w, axis, i) * excess(w, i);
+        });
+  }
+}
+
+void add_outside(std::map<std::string, Recipe>& all) {
+  all["outside_sqrt_field_z"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return std::sqrt(std::abs(field(w, 2, i)));
+  });
+  all["outside_one_sided_x"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return std::max(0.0, field(w, 0, i));
+  });
+  all["outside_direction_cube_y"] = [](const World& w, const ForeignEffect&) {
+    const Series h = field(w, 1);
+    double going = 1.0;
+    return mapped(w.size(), [&](std::size_t i) {
+      if (i > 0 && h[i] != h[i - 1]) going = h[i] > h[i - 1] ? 1.0 : -1.0;
+      return going * h[i] * h[i] * h[i];
+    });
+  };
+  all["outside_sine_field_z"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return std::sin(2.0 * kPi * field(w, 2, i) / 1.9);
+  });
+  all["outside_pulse"] = instant([](const World& w, const ForeignEffect& e, std::size_t i) {
+    const double lasts = 0.2 * World::time_s(w.size());
+    const double since = World::time_s(i) - e.inner;
+    return since >= 0.0 && since < lasts ? 1.0 : 0.0;
+  });
+  all["outside_temperature_kink"] =
+      instant([](const World& w, const ForeignEffect&, std::size_t i) {
+        return std::abs(excess(w, i) - 17.0);
+      });
+  all["outside_rate_squared"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return w.rate_c_per_h[i] * w.rate_c_per_h[i];
+  });
+  all["outside_heating_only"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return std::max(0.0, w.rate_c_per_h[i]);
+  });
+  all["outside_field_times_gradient_z"] =
+      instant([](const World& w, const ForeignEffect&, std::size_t i) {
+        return field(w, 2, i) * field(w, 2, i) * w.gradient_c[i];
+      });
+  all["outside_bias_per_orientation"] =
+      instant([](const World& w, const ForeignEffect&, std::size_t i) {
+        return std::cos(3.0 * w.azimuth_deg[i] * kPi / 180.0);
+      });
+}
+
+const std::map<std::string, Recipe>& recipes() {
+  static const std::map<std::string, Recipe> all = [] {
+    std::map<std::string, Recipe> made;
+    add_thermal(made);
+    add_timed(made);
+    add_magnetic(made);
+    add_outside(made);
+    return made;
+  }();
+  return all;
+}
+
+/// Ends of the inner parameter's range, empty when the effect has none.
+std::pair<double, double> inner_range(const std::string& id, const World& world) {
+  const double length_s = World::time_s(world.size());
+  const auto is = [&](const char* prefix) { return id.starts_with(prefix); };
+  if (id == "bias_step") return {0.15 * length_s, 0.85 * length_s};
+  if (id == "outside_pulse") return {0.15 * length_s, 0.65 * length_s};
+  if (id == "warm_up") return {600.0, 3600.0};
+  if (id == "temperature_rate_lagged") return {60.0, 900.0};
+  if (id == "temperature_hysteresis") return {1.0, 6.0};
+  if (id == "temperature_ripple") return {2.5, 9.0};
+  if (id == "coil_heating") return {600.0, 5400.0};
+  if (is("magnetic_saturation")) return {0.7, 2.5};
+  if (is("magnetic_hysteresis")) return {0.25, 1.2};
+  if (is("magnetic_settling")) return {40.0, 240.0};
+  return {0.0, 0.0};
+}
+
+}  // namespace
+
+std::vector<std::string> other_shapes() {
+  return {"magnetic_hysteresis_x",
+          "magnetic_hysteresis_y",
+          "magnetic_hysteresis_z",
+          "magnetic_saturation_x",
+          "magnetic_saturation_y",
+          "magnetic_saturation_z",
+          "magnetic_settling_x",
+          "magnetic_settling_y",
+          "magnetic_settling_z",
+          "temperature_rate_lagged",
+          "temperature_hysteresis",
+          "coil_heating",
+          "warm_up",
+          "bias_step"};
+}
+
+std::vector<std::string> outside_effects() {
+  std::vector<std::string> out;
+  for (const auto& [id, recipe] : recipes()) {
+    if (id.starts_with("outside_")) out.push_back(id);
+  }
+  return out;
+}
+
+Series regressor(const World& world, const ForeignEffect& effect) {
+  const auto recipe = recipes().find(effect.id);
+  assert(recipe != recipes().end());
+  return recipe->second(world, effect);
+}
+
+ForeignEffect drawn_effect(const std::string& id, Shape shape, const World& world,
+                           std::mt19937_64& engine) {
+  ForeignEffect effect{.id = id, .shape = shape};
+  std::uniform_real_distribution<> uniform;
+  const auto [least, most] = inner_range(id, world);
+  const double share = uniform(engine);
+  const bool instant_in_time = id == "bias_step" || id == "outside_pulse";
+  if (most > 0.0) {
+    effect.inner =
+        instant_in_time ? least + share * (most - least) : least * std::pow(most / least, share);
+  }
+  effect.phase = 2.0 * kPi * uniform(engine);
+  effect.amplitude = uniform(engine) < 0.5 ? -1.0 : 1.0;
+  return effect;
+}
+
+}  // namespace fogbench::tests
