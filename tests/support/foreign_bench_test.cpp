@@ -27,16 +27,16 @@ TEST_P(ForeignNoiseKind, DrawsHaveTheStatedCovariance) {
   const Eigen::LLT<MatrixXd> factor(stated);
   ASSERT_EQ(factor.info(), Eigen::Success);
   std::mt19937_64 engine(7);
-  constexpr int kDraws = 3000;
+  constexpr int kDraws = 1500;
   MatrixXd whitened = MatrixXd::Zero(stated.rows(), stated.rows());
   for (int i = 0; i < kDraws; ++i) {
     const VectorXd u = factor.matrixL().solve(draw_noise(noise, world, engine));
     whitened += u * u.transpose() / kDraws;
   }
-  // Of unit normals: entries off the diagonal have a deviation of 1/sqrt(draws), 0.018, those on it
+  // Of unit normals: entries off the diagonal have a deviation of 1/sqrt(draws), 0.026, those on it
   // sqrt(2) of that, more with long tails. Of 325 entries none is five deviations off.
   const MatrixXd error = whitened - MatrixXd::Identity(stated.rows(), stated.rows());
-  EXPECT_LT(error.cwiseAbs().maxCoeff(), noise.tails > 0.0 ? 0.25 : 0.13);
+  EXPECT_LT(error.cwiseAbs().maxCoeff(), noise.tails > 0.0 ? 0.35 : 0.19);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ForeignNoiseKind,
