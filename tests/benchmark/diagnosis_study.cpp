@@ -114,9 +114,9 @@ std::vector<Record> run(const std::vector<Task>& tasks, const Options& options) 
       records[i] = run_trial(maker, tasks[i].what, tasks[i].number, options.baselines);
       const std::lock_guard lock(printing);
       if (kept) kept << to_line(records[i]) << std::endl;
-      fmt::print("{:5}/{} {:5.2f} s  {} #{}  [{}]  {}\n", i + 1, tasks.size(), records[i].seconds,
-                 tasks[i].what.name(), tasks[i].number, name_of(records[i].outcome),
-                 records[i].says);
+      fmt::print("{:5}/{} {:5.2f} s  {} #{} ({:.4g}, rho {:.2f})  [{}]  {}\n", i + 1, tasks.size(),
+                 records[i].seconds, tasks[i].what.name(), tasks[i].number, records[i].inner,
+                 records[i].cosine, name_of(records[i].outcome), records[i].says);
       std::fflush(stdout);
     }
   };

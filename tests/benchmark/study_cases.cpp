@@ -109,14 +109,17 @@ void add_outside(std::vector<DiagnosisCase>& out) {
   const std::vector<Asked> asked{
       {Design::kMagnetic,
        {"outside_sqrt_field_z", "outside_one_sided_x", "outside_direction_cube_y",
-        "outside_sine_field_z", "outside_pulse"}},
+        "outside_sine_field_z", "outside_pulse", "outside_dead_zone_y", "outside_ageing_scale_x",
+        "outside_exponential_field_z", "outside_sine_in_time", "outside_two_pulses",
+        "outside_creep"}},
       {Design::kThermalCooling,
-       {"outside_pulse", "outside_temperature_kink", "outside_rate_squared",
-        "outside_heating_only"}},
+       {"outside_pulse", "outside_temperature_kink", "outside_rate_squared", "outside_heating_only",
+        "outside_thermal_switch", "outside_root_of_excess", "outside_sine_in_time"}},
       {Design::kTurntable, {"outside_bias_per_orientation", "outside_pulse"}},
       {Design::kMixed,
        {"outside_sqrt_field_z", "outside_sine_field_z", "outside_temperature_kink",
-        "outside_rate_squared", "outside_field_times_gradient_z", "outside_pulse"}}};
+        "outside_field_times_gradient_z", "outside_ageing_scale_x", "outside_thermal_switch",
+        "outside_two_pulses"}}};
   for (const Asked& a : asked) {
     for (const std::string& id : a.effects) {
       add(out, {.part = "outside", .design = a.design, .hidden = {id}}, {"navigation", "tactical"},

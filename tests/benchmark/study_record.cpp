@@ -12,7 +12,7 @@
 namespace fogbench::tests {
 namespace {
 
-constexpr std::size_t kFields = 14;
+constexpr std::size_t kFields = 15;
 
 Answer answer_of_names(const std::vector<std::string>& names) {
   Answer out;
@@ -46,11 +46,12 @@ Result<Record> parse(const std::string& line) {
     }
     out.cosine = std::stod(field[10]);
     out.seconds = std::stod(field[12]);
+    out.inner = std::stod(field[13]);
   } catch (const std::exception&) {
     return bad;
   }
   out.nearest = field[11];
-  out.says = field[13];
+  out.says = field[14];
   return out;
 }
 
@@ -92,6 +93,7 @@ Record run_trial(TrialMaker& maker, const DiagnosisCase& what, std::uint64_t num
         signals, trial.model, [&](const Eigen::MatrixXd& a) { return bench->in_noise(a); });
     const auto nearest = candidates.nearest(
         bench->clear_in_noise(bench->column(trial.hidden.front())), trial.hidden.front().id);
+    out.inner = trial.hidden.front().inner;
     out.cosine = nearest.cosine;
     out.nearest = nearest.effect;
   }
@@ -101,10 +103,10 @@ Record run_trial(TrialMaker& maker, const DiagnosisCase& what, std::uint64_t num
 std::string to_line(const Record& r) {
   std::vector<int> baselines;
   for (const Outcome one : r.baselines) baselines.push_back(static_cast<int>(one));
-  return fmt::format("{}\t{}\t{}\t{}\t{:g}\t{}\t{}\t{}\t{}\t{}\t{:.4f}\t{}\t{:.3f}\t{}", r.part,
-                     r.design, r.noise, r.truth, r.s, r.rows, r.trial, r.seed,
+  return fmt::format("{}\t{}\t{}\t{}\t{:g}\t{}\t{}\t{}\t{}\t{}\t{:.4f}\t{}\t{:.3f}\t{:.4g}\t{}",
+                     r.part, r.design, r.noise, r.truth, r.s, r.rows, r.trial, r.seed,
                      static_cast<int>(r.outcome), fmt::join(baselines, " "), r.cosine,
-                     r.nearest.empty() ? "-" : r.nearest, r.seconds, r.says);
+                     r.nearest.empty() ? "-" : r.nearest, r.seconds, r.inner, r.says);
 }
 
 Result<std::vector<Record>> read_records(const std::filesystem::path& file) {

@@ -21,6 +21,7 @@ struct Record {
   std::uint64_t trial = 0, seed = 0;
   Outcome outcome = Outcome::kAdequate;
   std::array<Outcome, kBaselines.size()> baselines{};
+  double inner = 0.0;   ///< parameter of the first hidden effect
   double cosine = 0.0;  ///< with the nearest other effect of the catalogue, first hidden effect
   std::string nearest;
   double seconds = 0.0;  ///< of the verdict

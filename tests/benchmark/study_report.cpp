@@ -223,13 +223,13 @@ bool wrong(const Record& r) {
 
 std::string wrong_answers(const std::vector<Record>& records) {
   std::string out;
-  put_header(out, {"part", "truth", "design", "noise", "s", "trial", "answer"});
+  put_header(out, {"part", "truth", "design", "noise", "s", "inner", "rho", "trial", "answer"});
   for (const Record& r : records) {
     if (!wrong(r)) continue;
     std::string says = r.says;
     std::replace(says.begin(), says.end(), '|', '/');
-    out += fmt::format("| {} | {} | {} | {} | {:g} | {} | {} |\n", r.part, r.truth, r.design,
-                       r.noise, r.s, r.trial, says);
+    out += fmt::format("| {} | {} | {} | {} | {:g} | {:.4g} | {:.2f} | {} | {} |\n", r.part,
+                       r.truth, r.design, r.noise, r.s, r.inner, r.cosine, r.trial, says);
   }
   return out;
 }

@@ -235,6 +235,38 @@ void add_outside(std::map<std::string, Recipe>& all) {
       });
 }
 
+/// Effects that are also far from the usual suspects (powers, roots, signs, sines of one signal).
+void add_unusual(std::map<std::string, Recipe>& all) {
+  all["outside_dead_zone_y"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    const double h = field(w, 1, i);
+    return std::copysign(std::max(0.0, std::abs(h) - 1.6), h);
+  });
+  all["outside_ageing_scale_x"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return field(w, 0, i) * World::time_s(i) / 3600.0;
+  });
+  all["outside_exponential_field_z"] =
+      instant([](const World& w, const ForeignEffect&, std::size_t i) {
+        return std::exp(field(w, 2, i) / 1.2);
+      });
+  all["outside_sine_in_time"] = instant([](const World&, const ForeignEffect& e, std::size_t i) {
+    return std::sin(2.0 * kPi * World::time_s(i) / e.inner + e.phase);
+  });
+  all["outside_creep"] = instant([](const World&, const ForeignEffect&, std::size_t i) {
+    return std::log1p(World::time_s(i) / 120.0);
+  });
+  all["outside_two_pulses"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    const double share = static_cast<double>(i) / static_cast<double>(w.size());
+    const bool first = share > 0.2 && share<0.3, second = share> 0.6 && share < 0.7;
+    return first || second ? 1.0 : 0.0;
+  });
+  all["outside_thermal_switch"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return w.temperature_c[i] > 42.0 ? 1.0 : 0.0;
+  });
+  all["outside_root_of_excess"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
+    return std::sqrt(std::max(0.0, excess(w, i)));
+  });
+}
+
 const std::map<std::string, Recipe>& recipes() {
   static const std::map<std::string, Recipe> all = [] {
     std::map<std::string, Recipe> made;
@@ -242,6 +274,7 @@ const std::map<std::string, Recipe>& recipes() {
     add_timed(made);
     add_magnetic(made);
     add_outside(made);
+    add_unusual(made);
     return made;
   }();
   return all;
@@ -253,6 +286,7 @@ std::pair<double, double> inner_range(const std::string& id, const World& world)
   const auto is = [&](const char* prefix) { return id.starts_with(prefix); };
   if (id == "bias_step") return {0.15 * length_s, 0.85 * length_s};
   if (id == "outside_pulse") return {0.15 * length_s, 0.65 * length_s};
+  if (id == "outside_sine_in_time") return {2400.0, 7200.0};
   if (id == "warm_up") return {600.0, 3600.0};
   if (id == "temperature_rate_lagged") return {60.0, 900.0};
   if (id == "temperature_hysteresis") return {1.0, 6.0};
