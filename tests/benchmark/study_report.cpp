@@ -58,6 +58,9 @@ std::vector<Figure> figures() {
            [](const Record& r) { return r.part == "nulls" && of_the_family(r); }, alarm},
           {"false alarms, other noise", "<= 5 %",
            [](const Record& r) { return r.part == "nulls" && !of_the_family(r); }, alarm},
+          {"false alarms, all noise, without \"a slow effect or random walk\"", "",
+           [](const Record& r) { return r.part == "nulls"; },
+           [](const Record&, Outcome o) { return !silent(o) && o != Outcome::kRightInSet; }},
           {"one effect named, s >= 8, 75 rows, rho <= 0.9", ">= 95 %",
            [=](const Record& r) {
              return single(r) && r.rows <= kSmall && r.cosine <= kTellable && !slow(r);
@@ -163,10 +166,11 @@ std::string nulls_table(const std::vector<Record>& records) {
   }
   for (const auto& [where, count] : counts) {
     const auto quiet = count.of[static_cast<std::size_t>(Outcome::kAdequate)];
+    const auto doubts = count.of[static_cast<std::size_t>(Outcome::kRightInSet)];
     const auto unexplained = count.of[static_cast<std::size_t>(Outcome::kUnexplained)];
-    out += fmt::format("| {} | {} | {} | {} | {} | {} |", where.first, where.second, count.trials,
-                       count.trials - quiet - unexplained, unexplained,
-                       rate_text(count.trials - quiet, count.trials));
+    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} |", where.first, where.second,
+                       count.trials, count.trials - quiet - unexplained - doubts, doubts,
+                       unexplained, rate_text(count.trials - quiet, count.trials));
     for (const auto& theirs : count.baseline) {
       out +=
           fmt::format(" {} |", count.trials - theirs[static_cast<std::size_t>(Outcome::kAdequate)]);

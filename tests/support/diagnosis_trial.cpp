@@ -76,7 +76,10 @@ Outcome judge(const Answer& answer, const std::vector<std::string>& hidden) {
   std::size_t widest = 0;
   for (const auto& set : answer.sets) widest = std::max(widest, set.size());
   const std::size_t right = matched(answer.sets, hidden);
-  if (right == 0 || hidden.empty()) {
+  const bool or_noise = std::all_of(answer.sets.begin(), answer.sets.end(),
+                                    [](const auto& set) { return holds(set, "random_walk"); });
+  if (hidden.empty() && or_noise) return Outcome::kRightInSet;
+  if (right == 0) {
     return widest > 1 ? Outcome::kSetWithoutTruth : Outcome::kWrongName;
   }
   if (answer.sets.size() > right) return Outcome::kExtra;

@@ -57,7 +57,8 @@ struct Answer {
   std::string says;                            ///< "warm_up | drift_linear + bias_step, p ..."
 };
 
-/// `sets` may be matched with the hidden effects one to one, each in its own set.
+/// Each hidden effect needs a set of its own. Where nothing is hidden, sets that all hold
+/// "random_walk" are kRightInSet.
 Outcome judge(const Answer& answer, const std::vector<std::string>& hidden);
 
 struct Trial {

@@ -33,6 +33,13 @@ TEST(Judge, GivesEachOfAPairItsOwnSet) {
   EXPECT_EQ(judge(missing({{"bias_step", "warm_up"}, {"drift_linear"}}), truth), Outcome::kExtra);
 }
 
+TEST(Judge, ToleratesADoubtAboutARandomWalkWhereNothingIsHidden) {
+  EXPECT_EQ(judge(missing({{"drift_linear", "random_walk"}}), {}), Outcome::kRightInSet);
+  EXPECT_EQ(judge(missing({{"drift_linear", "random_walk"}, {"warm_up"}}), {}),
+            Outcome::kSetWithoutTruth);
+  EXPECT_EQ(judge(missing({{"drift_linear"}}), {}), Outcome::kWrongName);
+}
+
 TEST(Judge, CountsACaveatAsAFlagOnlyOutsideTheCatalogue) {
   Answer answer = missing({{"magnetic_quadratic_z"}});
   answer.or_shape = "|field_z_ut|";

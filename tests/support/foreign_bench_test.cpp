@@ -40,9 +40,8 @@ TEST_P(ForeignNoiseKind, DrawsHaveTheStatedCovariance) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ForeignNoiseKind,
-                         testing::Values("white", "flicker", "walk", "navigation", "tactical",
-                                         "fractional", "markov", "interference", "tails", "swing",
-                                         "quantised"),
+                         testing::Values("white", "flicker", "walk", "fractional", "markov",
+                                         "interference", "tails", "swing", "quantised"),
                          [](const auto& kind) { return kind.param; });
 
 TEST(ForeignBench, AnEffectIsPutInAtTheRatioAskedFor) {
