@@ -14,8 +14,29 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kInnerValues = 8;
+constexpr int kInstants = 40;  // where something may jump
 // A column that the base model takes up to this share has nothing left to show.
 constexpr double kUntestable = 1e-3;
+
+/// A signal that moves less than this shows its instrument's noise, not an effect.
+double least_span(std::string_view signal) {
+  if (signal.starts_with("field_")) return 5.0;
+  if (signal == "temperature_c" || signal == "temperature_rate_c_per_h") return 0.5;
+  if (signal == "temperature_gradient_c") return 0.05;
+  if (signal == "heater_w" || signal == "ambient_c") return 0.2;
+  return 0.0;
+}
+
+bool excited(const model::EffectInfo& info, const model::Signals& signals) {
+  for (const std::string_view name : info.signals) {
+    const auto signal = signals.signal(name);
+    if (!(signal.maxCoeff() - signal.minCoeff() > least_span(name))) return false;
+  }
+  if (!info.id.starts_with("magnetic_cross")) return true;
+  const auto a = signals.signal(info.signals[0]).array(),
+             b = signals.signal(info.signals[1]).array();
+  return (a * b).abs().maxCoeff() > 0.1 * a.abs().maxCoeff() * b.abs().maxCoeff();
+}
 
 std::vector<std::vector<double>> inner_values(const model::EffectInfo& info,
                                               const model::Signals& signals) {
@@ -27,9 +48,10 @@ std::vector<std::vector<double>> inner_values(const model::EffectInfo& info,
     least = range.minCoeff();
     most = range.maxCoeff();
   }
+  const int values = parameter.name == "t0" ? kInstants : kInnerValues;
   std::vector<std::vector<double>> out;
-  for (int i = 0; i < kInnerValues; ++i) {
-    const double share = (i + 0.5) / kInnerValues;
+  for (int i = 0; i < values; ++i) {
+    const double share = (i + 0.5) / values;
     out.push_back({parameter.logarithmic ? least * std::pow(most / least, share)
                                          : least + share * (most - least)});
   }
@@ -59,7 +81,10 @@ CandidateColumns candidate_columns(const model::Signals& signals, const config::
   std::vector<VectorXd> columns;
   for (const model::Effect* effect : model::catalogue()) {
     const model::EffectInfo& info = effect->info();
-    if (present.contains(info.id) || !signals.missing_for(info).empty()) continue;
+    if (present.contains(info.id) || !signals.missing_for(info).empty() ||
+        !excited(info, signals)) {
+      continue;
+    }
     for (const auto& inner : inner_values(info, signals)) {
       const MatrixXd raw = effect->regressor(signals, inner);
       if (!raw.allFinite()) continue;

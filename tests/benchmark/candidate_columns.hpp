@@ -36,7 +36,8 @@ struct CandidateColumns {
   Nearest nearest(const Eigen::VectorXd& column, const std::string& own) const;
 };
 
-/// Every effect that the table has the signals for, inner parameters on 8 values.
+/// Every effect that the table has the signals for and excites, inner parameters on 8
+/// values, instants on 40.
 /// Precondition: the model's terms are effects without inner parameters, the table has no gaps.
 CandidateColumns candidate_columns(const model::Signals& signals, const config::ModelFile& model,
                                    const Whitening& whiten);

@@ -40,10 +40,7 @@ Result<Record> parse(const std::string& line) {
     out.trial = std::stoull(field[6]);
     out.seed = std::stoull(field[7]);
     out.outcome = outcome_at(std::stoi(field[8]));
-    for (Outcome& one : out.baselines) {
-      if (!(baselines >> outcome)) return bad;
-      one = outcome_at(outcome);
-    }
+    while (baselines >> outcome) out.baselines.push_back(outcome_at(outcome));
     out.cosine = std::stod(field[10]);
     out.seconds = std::stod(field[12]);
     out.inner = std::stod(field[13]);
@@ -82,8 +79,8 @@ Record run_trial(TrialMaker& maker, const DiagnosisCase& what, std::uint64_t num
   out.says = answer.says;
   if (with_baselines) {
     const auto answers = baseline_answers(trial.table, trial.model);
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      out.baselines[i] = judge(answer_of_names(answers[i]), what.hidden);
+    for (const auto& names : answers) {
+      out.baselines.push_back(judge(answer_of_names(names), what.hidden));
     }
   }
   if (!trial.hidden.empty()) {
@@ -105,8 +102,9 @@ std::string to_line(const Record& r) {
   for (const Outcome one : r.baselines) baselines.push_back(static_cast<int>(one));
   return fmt::format("{}\t{}\t{}\t{}\t{:g}\t{}\t{}\t{}\t{}\t{}\t{:.4f}\t{}\t{:.3f}\t{:.4g}\t{}",
                      r.part, r.design, r.noise, r.truth, r.s, r.rows, r.trial, r.seed,
-                     static_cast<int>(r.outcome), fmt::join(baselines, " "), r.cosine,
-                     r.nearest.empty() ? "-" : r.nearest, r.seconds, r.inner, r.says);
+                     static_cast<int>(r.outcome),
+                     baselines.empty() ? "-" : fmt::format("{}", fmt::join(baselines, " ")),
+                     r.cosine, r.nearest.empty() ? "-" : r.nearest, r.seconds, r.inner, r.says);
 }
 
 Result<std::vector<Record>> read_records(const std::filesystem::path& file) {

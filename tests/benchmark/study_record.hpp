@@ -2,7 +2,6 @@
 // What the study keeps of each trial, as a line of tab-separated text, so that parts run on
 // different days make one table.
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -20,8 +19,8 @@ struct Record {
   long rows = 0;
   std::uint64_t trial = 0, seed = 0;
   Outcome outcome = Outcome::kAdequate;
-  std::array<Outcome, kBaselines.size()> baselines{};
-  double inner = 0.0;   ///< parameter of the first hidden effect
+  std::vector<Outcome> baselines;  ///< in the order of kBaselines; empty: not asked
+  double inner = 0.0;              ///< parameter of the first hidden effect
   double cosine = 0.0;  ///< with the nearest other effect of the catalogue, first hidden effect
   std::string nearest;
   double seconds = 0.0;  ///< of the verdict
