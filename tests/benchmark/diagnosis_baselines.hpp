@@ -1,9 +1,9 @@
 #pragma once
 // What is usually done instead of a diagnosis, on the same tables and with the catalogue's own
-// regressors: regression methods that pick columns and always answer with a list of names.
+// regressors: regression methods that pick columns.
 //
-//   library: every effect that the table has the signals for, inner parameters on 8 values (instants: 40);
-//            columns cleared of the base model and scaled to length 1
+//   library: every effect that the table has the signals for and excites, inner parameters on 8
+//            values (instants: 40); columns cleared of the base model and scaled to length 1
 //   stepwise, independent  forward selection while BIC = n log(RSS/n) + k log n falls
 //   stepwise, coloured     the same after whitening with the noise estimated under the base model
 //   LASSO                  coordinate descent on 40 penalties, the one of least BIC
