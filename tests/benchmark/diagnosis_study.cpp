@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -78,14 +79,21 @@ struct Task {
   std::uint64_t number;
 };
 
+/// Trial by trial, the cases of each in an order of chance: a study that was cut short is a fair
+/// sample of the whole.
 std::vector<Task> tasks_of(const Options& options) {
   std::vector<Task> out;
   for (std::uint64_t i = 0; i < options.trials; ++i) {
+    const std::size_t begin = out.size();
     for (const DiagnosisCase& what : study_cases()) {
       if (!options.part.empty() && what.part != options.part) continue;
       if (what.name().find(options.only) == std::string::npos) continue;
       out.push_back({what, options.first + i});
     }
+    std::sort(out.begin() + static_cast<std::ptrdiff_t>(begin), out.end(),
+              [](const Task& a, const Task& b) {
+                return seed_of(a.what, a.number) < seed_of(b.what, b.number);
+              });
   }
   return out;
 }

@@ -18,14 +18,6 @@ std::vector<std::string> base_for(const DiagnosisCase& what) {
   return base;
 }
 
-std::uint64_t seed_of(const std::string& text, std::uint64_t number) {
-  std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
-  for (const char c : text + "#" + std::to_string(number)) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  }
-  return hash;
-}
-
 bool holds(const std::vector<std::string>& set, const std::string& name) {
   return std::find(set.begin(), set.end(), name) != set.end();
 }
@@ -59,6 +51,14 @@ std::string DiagnosisCase::name() const {
   if (shape == Shape::kOther) truth += "~other";
   std::string out = fmt::format("{}/{}/{}/s{:g}/{}", part, name_of(design), noise, s, truth);
   return variant.empty() ? out : out + "/" + variant;
+}
+
+std::uint64_t seed_of(const DiagnosisCase& what, std::uint64_t number) {
+  std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a
+  for (const char c : what.name() + "#" + std::to_string(number)) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  }
+  return hash;
 }
 
 std::string_view name_of(Outcome outcome) {
@@ -102,8 +102,7 @@ std::shared_ptr<const ForeignBench> TrialMaker::bench(const DiagnosisCase& what)
 
 Trial TrialMaker::make(const DiagnosisCase& what, std::uint64_t number) {
   const auto own_bench = bench(what);
-  Trial out{
-      .seed = seed_of(what.name(), number), .hidden = {}, .table = {}, .quiet = {}, .model = {}};
+  Trial out{.seed = seed_of(what, number), .hidden = {}, .table = {}, .quiet = {}, .model = {}};
   std::mt19937_64 engine(out.seed);
   for (const std::string& id : what.hidden) {
     const ForeignEffect effect = drawn_effect(id, what.shape, own_bench->worlds().front(), engine);

@@ -69,6 +69,8 @@ struct Trial {
   config::ModelFile model;              ///< what the experimenter has
 };
 
+std::uint64_t seed_of(const DiagnosisCase& what, std::uint64_t number);
+
 /// Benches are made once each and kept. May be shared between threads.
 class TrialMaker {
  public:
