@@ -152,7 +152,7 @@ std::string noise_section(const Diagnosis& d) {
                    noise.rate_random_walk_deg_per_h_per_sqrt_h > 0.0;
   if (!any) return d.after.noise.says.empty() ? "" : out;  // independent noise has no such numbers
   out +=
-      "<div class=\"wide\"><table><tr><th>noise</th><th>estimate</th><th "
+      "<div class=\"wide\"><table><tr><th>noise</th><th>most likely</th><th "
       "class=\"text\">unit</th></tr>\n";
   out += coefficient_row("N, angle random walk", noise.angle_random_walk_deg_per_sqrt_h,
                          "deg/sqrt(h)");
