@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include "model/diagnose/library_builder.hpp"
 #include "model/diagnose/moving_signals.hpp"
@@ -92,6 +94,9 @@ void add_effect(LibraryBuilder& builder, const Effect& effect) {
   Candidate candidate{.name = id, .kind = Candidate::Kind::kEffect, .slow = is_slow(id)};
   candidate.terms.push_back({.effect = id});
   candidate.units.assign(info.units.begin(), info.units.end());
+  if (info.signals.size() == 1 && !info.has_history && info.signals.front() != "time_s") {
+    candidate.curve_over = info.signals.front();
+  }
   if (!info.parameters.empty()) candidate.parameter = info.parameters.front();
   for (Shape& shape : shapes_of(effect, signals)) {
     candidate.shapes.push_back([shape = std::move(shape), source = builder.source()](double inner) {
@@ -182,6 +187,16 @@ Status add_changes_between_runs(LibraryBuilder& builder) {
 }
 
 }  // namespace
+
+double Candidate::spacing(double inner) const {
+  double below = -std::numeric_limits<double>::infinity(), above = -below;
+  for (const Block& block : blocks) {
+    if (block.inner < inner) below = std::max(below, block.inner);
+    if (block.inner > inner) above = std::min(above, block.inner);
+  }
+  if (std::isinf(below)) return std::isinf(above) ? 0.0 : above - inner;
+  return std::isinf(above) ? inner - below : 0.5 * (above - below);
+}
 
 Result<Library> make_library(const LibrarySource& source) {
   LibraryBuilder builder(source);

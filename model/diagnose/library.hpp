@@ -37,12 +37,16 @@ struct Candidate {
   std::string parameter_name;  ///< of a user's term; catalogue effects name theirs in `parameter`
   /// Columns on the rows of WorkingTable, the catalogue's own shape first. Shadows have none.
   std::vector<Shape> shapes;
+  /// The variable of which the effect is a curve: no memory, nothing else. Empty: it is more.
+  std::string curve_over;
   bool slow = false;  ///< acts on the scale of the whole run: a random walk may look like it
   std::vector<Block> blocks;
 
   bool shadow() const { return kind == Kind::kShadow; }
   /// The inner parameter is an instant: its likelihood is a staircase, without a tangent.
   bool instant() const { return parameter && parameter->name == "t0"; }
+  /// Distance between the grid points around a value of the inner parameter.
+  double spacing(double inner) const;
 };
 
 struct NotTestable {

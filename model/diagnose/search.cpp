@@ -17,6 +17,8 @@ using Eigen::VectorXd;
 // draws; a shadow convicts the leader below kOutside.
 constexpr double kRivalKept = 0.05;
 constexpr double kOutside = 0.01;
+// Each takes a simulation; who needs more has learned that he cannot tell.
+constexpr std::size_t kMostRivals = 8;
 // A shape that is the effect itself in these data, but for rounding, is ahead by less than this.
 constexpr double kClearlyAhead = 2.0;
 // Rivals further behind than this are not simulated: exp(-12) of the leader's likelihood.
@@ -44,8 +46,10 @@ MatrixXd joined(const MatrixXd& a, const MatrixXd& b) {
 MatrixXd columns_of(const Found& found, const Candidate& candidate) {
   const Shape& shape = candidate.shapes[found.shape];
   MatrixXd out = shape(found.inner);
-  if (candidate.parameter && !candidate.instant()) {
-    const double step = 1e-3 * std::abs(found.inner);
+  if (candidate.parameter) {
+    // An instant moves by rows, everything else smoothly.
+    const double step =
+        candidate.instant() ? 0.5 * candidate.spacing(found.inner) : 1e-3 * std::abs(found.inner);
     out = joined(out, (shape(found.inner + step) - shape(found.inner - step)) / (2.0 * step));
   }
   for (std::size_t other = 0; other < candidate.shapes.size(); ++other) {
@@ -70,6 +74,7 @@ class Search {
       i = judge(i, changes < kMostChanges) ? i + 1 : 0;
       changes += i == 0 ? 1 : 0;
     }
+    doubt_sums_of_one_variable();
     return std::move(result_);
   }
 
@@ -181,10 +186,16 @@ class Search {
 
   void find_rivals(Found& f, Stage& stage) {
     const auto own = static_cast<Index>(f.candidate);
-    std::vector<std::pair<double, std::string>> behind;
+    std::vector<std::pair<double, Index>> near;
     for (const Index c : stage.effects()) {
       const double lag = stage.lead()[own] - stage.lead()[c];
       if (c == own || is_found(static_cast<std::size_t>(c)) || lag > kHopeless) continue;
+      near.emplace_back(lag, c);
+    }
+    std::sort(near.begin(), near.end());
+    if (near.size() > kMostRivals) near.resize(kMostRivals);
+    std::vector<std::pair<double, std::string>> behind;
+    for (const auto& [lag, c] : near) {
       if (stage.plausible(c, lag, stage.effects()) > kRivalKept) {
         behind.emplace_back(std::max(lag, 0.0), stage.candidate(c).name);
       }
@@ -214,6 +225,20 @@ class Search {
     if (ahead > 0.0 ||
         (-ahead < kHopeless && stage.plausible(shadow, -ahead, stage.effects()) > kRivalKept)) {
       f.or_shape = stage.candidate(shadow).name;
+    }
+  }
+
+  /// Two curves over one variable are one other curve as well, and nothing in the data says which.
+  void doubt_sums_of_one_variable() {
+    for (Found& f : found()) {
+      const std::string variable = input_.library.candidates[f.candidate].curve_over;
+      if (variable.empty()) continue;
+      const auto curves = std::count_if(found().begin(), found().end(), [&](const Found& other) {
+        return input_.library.candidates[other.candidate].curve_over == variable;
+      });
+      if (curves < 2) continue;
+      f.or_shape = "one other function of " + variable;
+      f.shape_leads = true;
     }
   }
 

@@ -15,6 +15,7 @@ constexpr Index kNullDraws = 499;
 constexpr Index kNullDrawsManyRows = 199;
 constexpr Index kManyRows = 400;
 constexpr Index kRivalDraws = 299;
+constexpr int kInstants = 16;
 // exp(-3) of the likelihood: what one parameter more may gain by noise.
 constexpr double kNearlyAsWell = 6.0;
 
@@ -76,8 +77,7 @@ bool Stage::at_edge(Index c) const {
 double Stage::refined(Index c) const {
   const Candidate& which = candidate(c);
   const double inner = detector_.best_block(c).inner;
-  // The likelihood of an instant is a staircase: the grid is its resolution.
-  if (!which.parameter || which.instant()) return inner;
+  if (!which.parameter) return inner;
   const Block& top = detector_.best_block(c);
   const auto neighbour = [&](std::ptrdiff_t step) {
     const std::ptrdiff_t at = &top - which.blocks.data() + step;
@@ -86,6 +86,19 @@ double Stage::refined(Index c) const {
     return next.shape == top.shape ? next.inner : inner;
   };
   double low = neighbour(-1), high = neighbour(+1);
+  if (which.instant()) {
+    // A staircase with slopes inside the windows: no place for a golden section.
+    double best = inner, most = -1.0;
+    for (int i = 0; i <= kInstants; ++i) {
+      const double trial = low + (high - low) * i / kInstants;
+      const double value = detector_.lambda_of(which.shapes[top.shape](trial));
+      if (value > most) {
+        most = value;
+        best = trial;
+      }
+    }
+    return best;
+  }
   constexpr double kGolden = 0.381966;
   constexpr int kRounds = 12;
   const auto lambda = [&](double value) {
