@@ -1,5 +1,6 @@
 #include "model/diagnose/shapes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -133,6 +134,16 @@ struct Reconstruction {
   const Signals signals;
 };
 
+/// Half of it is a lag that lies within what averaging leaves open: the instants at which a logger
+/// takes the temperatures of a window's two ends.
+double usual_duration(const Signals& signals) {
+  const auto given = signals.signal("duration_s");
+  std::vector<double> durations(given.begin(), given.end());
+  const auto middle = durations.begin() + static_cast<std::ptrdiff_t>(durations.size() / 2);
+  std::nth_element(durations.begin(), middle, durations.end());
+  return std::max(*middle, 1.0);
+}
+
 VectorXd field(const Signals& signals, std::string_view effect) {
   return signals.signal(std::string("field_") + effect.back() + "_ut") / kFieldUnitUt;
 }
@@ -166,6 +177,11 @@ std::vector<Shape> shapes_of(const Effect& effect, const Signals& signals) {
         signals, rate ? kRate : kAcceleration,
         rate ? rate_between_ends(signals) : acceleration_between_ends(signals));
     out.push_back([own, other](double inner) { return own(other->signals, inner); });
+    if (id == "temperature_rate") {
+      out.push_back([&signals, tau = 0.5 * usual_duration(signals)](double) {
+        return find_effect("temperature_rate_lagged")->regressor(signals, std::vector{tau});
+      });
+    }
   }
   return out;
 }
