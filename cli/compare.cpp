@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
@@ -13,7 +13,9 @@
 #include "cli/output.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
+#include "config/rounding.hpp"
 #include "config/units.hpp"
+#include "daemon/run_options.hpp"
 #include "model/compare.hpp"
 #include "model/report.hpp"
 
@@ -93,11 +95,8 @@ void print_text(const model::Comparison& c, const CompareOptions& options, std::
                    {"unit", "", Align::kLeft}});
   for (const model::Estimate& e : c.fit.estimates) {
     const double expanded = e.coverage_factor * e.standard_error;
-    table.add_row({e.name, std::isnan(e.value) ? "-" : fmt::format("{:.6g}", e.value),
-                   e.held                 ? "held"
-                   : std::isnan(expanded) ? "-"
-                                          : fmt::format("{:.2g}", expanded),
-                   e.unit});
+    const config::Rounded r = config::rounded(e.value, e.held ? 0.0 : expanded);
+    table.add_row({e.name, r.value, e.held ? "held" : r.uncertainty, e.unit});
   }
   fmt::print("{}\n", table.text());
   for (const std::string& warning : c.fit.warnings) fmt::print("warning: {}\n", warning);
@@ -170,17 +169,24 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
   if (!file) return file.error();
   const auto model = config::load_model(*file);
   if (!model) return model.error();
+  // Whether the page can be written is better known before the work.
+  std::unique_ptr<config::OutputFile> page;
+  if (!options.report.empty()) {
+    auto opened = config::OutputFile::open(options.report);
+    if (!opened) return opened.error();
+    page = std::move(*opened);
+  }
   const auto table = load_table(options.data);
   if (!table) return table.error();
   const auto result = model::compare(
       *table, *model,
       {.noise = options.noise, .weight_by = options.weight_by, .as_is = options.as_is});
   if (!result) return result.error();
-  if (!options.report.empty()) {
-    const std::string page = model::report_html(*result, *table, *model, data_name(options.data));
-    if (Status written = config::write_file(options.report, page); !written) {
-      return written.error();
-    }
+  if (page) {
+    Status written =
+        page->write(model::report_html(*result, *table, *model, data_name(options.data)));
+    if (written) written = page->commit();
+    if (!written) return written.error();
   }
   if (options.json) {
     print_json(to_json(*result, options));
@@ -207,13 +213,12 @@ void add_compare(CLI::App& app, Action& action) {
         command.add_flag("--as-is", options.as_is,
                          "Hold the coefficients as given instead of fitting them");
         command.add_option("--weight-by", options.weight_by, "Column of standard deviations");
-        command
-            .add_option("--noise", options.noise,
-                        "auto, independent or coloured (needs time_s and duration_s)")
-            ->transform(CLI::CheckedTransformer(
-                std::map<std::string, Noise>{{"auto", Noise::kAuto},
-                                             {"independent", Noise::kIndependent},
-                                             {"coloured", Noise::kColoured}}));
+        daemon::add_choice_option<Noise>(
+            command, "--noise", options.noise,
+            {{"auto", Noise::kAuto},
+             {"independent", Noise::kIndependent},
+             {"coloured", Noise::kColoured}},
+            "Noise of the measurements (default: auto; coloured needs time_s and duration_s)");
         command.add_option("--report", options.report, "Write one self-contained HTML page");
         command.add_flag("--check", options.check, "Exit with 1 when the model is inadequate");
         command.add_flag("--json", options.json, "One JSON document");

@@ -193,6 +193,13 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
   if (!file) return file.error();
   const auto model = config::load_model(*file);
   if (!model) return model.error();
+  // Whether the page can be written is better known before the work.
+  std::unique_ptr<config::OutputFile> page;
+  if (!options.report.empty()) {
+    auto opened = config::OutputFile::open(options.report);
+    if (!opened) return opened.error();
+    page = std::move(*opened);
+  }
   const auto table = load_table(options.data);
   if (!table) return table.error();
   auto how = options_of(options);
@@ -209,11 +216,10 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
   }
   const auto result = model::diagnose(*table, *model, *how);
   if (!result) return result.error();
-  if (!options.report.empty()) {
-    const std::string page = model::diagnosis_html(*result, *model, data_name(options.data));
-    if (Status written = config::write_file(options.report, page); !written) {
-      return written.error();
-    }
+  if (page) {
+    Status written = page->write(model::diagnosis_html(*result, *model, data_name(options.data)));
+    if (written) written = page->commit();
+    if (!written) return written.error();
   }
   if (options.json) {
     print_json(to_json(*result, options));

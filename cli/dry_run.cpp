@@ -111,12 +111,15 @@ Result<ExitStatus> run_dry_run(const DryRunOptions& options) {
 
   ProgressLine progress;
   std::size_t points = 0;
+  bool unread = false;
   engine.on_progress([&](const procedures::Progress& now) { progress.show(now); });
   engine.on_point([&](const Point& point) {
     ++points;
     if (options.json) return;
     progress.clear();
-    if (!print_point(points, point)) engine.request_abort();
+    if (print_point(points, point)) return;
+    unread = true;
+    engine.request_abort();
   });
   const auto summary = (*session)->run(*planned);
   progress.clear();
@@ -130,7 +133,8 @@ Result<ExitStatus> run_dry_run(const DryRunOptions& options) {
       summary->end.outcome == RunOutcome::kAborted ? ErrorCode::kAborted : ErrorCode::kDevice,
       fmt::format("run {} {}: {}; the bench is {}", summary->run,
                   summary->end.outcome == RunOutcome::kAborted ? "aborted" : "failed",
-                  summary->end.reason,
+                  unread ? "its points could not be written to standard output"
+                         : summary->end.reason.c_str(),
                   summary->end.safe_state_reached ? "in its safe state" : "NOT in its safe state")};
 }
 

@@ -14,6 +14,7 @@
 #include "cli/output.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
+#include "config/rounding.hpp"
 #include "daemon/file_hash.hpp"
 #include "daemon/run_options.hpp"
 #include "drivers/clock.hpp"
@@ -56,10 +57,6 @@ std::vector<Correlation> strong_correlations(const model::FitResult& result) {
   return strong;
 }
 
-std::string number(double value) {
-  return std::isnan(value) ? "-" : fmt::format("{:.6g}", value);
-}
-
 void print_result(const model::FitResult& result, const FitCommandOptions& options,
                   const std::string& observable) {
   using Align = TextTable::Align;
@@ -70,11 +67,12 @@ void print_result(const model::FitResult& result, const FitCommandOptions& optio
                    {"unit", "", Align::kLeft}});
   for (const model::Estimate& e : result.estimates) {
     const double expanded = e.coverage_factor * e.standard_error;
-    table.add_row({e.name, number(e.value), e.held ? "held" : number(e.standard_error),
-                   e.held ? "" : number(expanded), e.unit});
+    const config::Rounded r = config::rounded(e.value, e.held ? 0.0 : e.standard_error);
+    table.add_row({e.name, r.value, e.held ? "held" : r.uncertainty,
+                   e.held ? "" : config::rounded(0.0, expanded).uncertainty, e.unit});
   }
   fmt::print("{}\n", table.text());
-  fmt::print("{} rows, {:g} degrees of freedom, RMS {:.6g} (unit of {})\n", result.rows.size(),
+  fmt::print("{} rows, {:g} degrees of freedom, RMS {:.4g} (unit of {})\n", result.rows.size(),
              result.degrees_of_freedom, result.rms, observable);
   if (!result.noise.says.empty()) fmt::print("noise: {}\n", result.noise.says);
   for (const Correlation& c : strong_correlations(result)) {
@@ -122,7 +120,8 @@ nlohmann::json to_json(const model::FitResult& result) {
 Status sign(config::FitRecord& record, const DataOptions& data) {
   for (const std::string& name : data.data) {
     record.data += (record.data.empty() ? "" : ", ") + name;
-    if (!std::filesystem::is_regular_file(name)) continue;
+    std::error_code ignored;  // what is no file is a run of the store
+    if (!std::filesystem::is_regular_file(name, ignored)) continue;
     const Result<std::string> hash = daemon::file_sha256(name);
     if (!hash) return hash.error();
     record.data_sha256 += (record.data_sha256.empty() ? "" : ", ") + *hash;

@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "config/rounding.hpp"
+
 namespace fogbench::cli {
 
 TextTable::TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
@@ -59,12 +61,9 @@ std::string fixed(double value, int decimals) {
 }
 
 std::string with_error(double value, double standard_error) {
-  if (!std::isfinite(standard_error) || standard_error <= 0.0) {
-    return std::isnan(value) ? "-" : fmt::format("{:.6g}", value);
-  }
-  const int decimals =
-      std::clamp(1 - static_cast<int>(std::floor(std::log10(standard_error))), 0, 9);
-  return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, standard_error, decimals);
+  const config::Rounded r = config::rounded(value, standard_error);
+  if (!std::isfinite(standard_error) || standard_error <= 0.0) return r.value;
+  return fmt::format("{} +- {}", r.value, r.uncertainty);
 }
 
 void print_json(const nlohmann::ordered_json& document) {

@@ -247,6 +247,7 @@ Result<FitResult> fit(const Table& table, const config::ModelFile& model,
   }
   fill_estimates(work);
   warn_of_correlation(work.result);
+  warn_of_little_evidence(work.result);
   work.result.fitted = fitted_model(work);
   return std::move(work.result);
 }

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "config/rounding.hpp"
 #include "model/fit_work.hpp"
 
 namespace fogbench::model {
@@ -9,6 +11,11 @@ namespace {
 
 /// Beyond this correlation two estimates are reported as nearly inseparable.
 constexpr double kCorrelated = 0.98;
+/// A residual below this part of the largest measurement is rounding.
+constexpr double kRounding = 1e-12;
+/// Times the range of the measurements: one degree, one 100 uT, one hour of a term should not be
+/// able to move them by more.
+constexpr double kFarBeyond = 10.0;
 
 /// All columns' coefficients, held and free.
 Eigen::VectorXd all_coefficients(const FitWork& work) {
@@ -140,6 +147,27 @@ void warn_of_correlation(FitResult& result) {
                         names[static_cast<std::size_t>(j)], names[static_cast<std::size_t>(i)], r));
       }
     }
+  }
+}
+
+void warn_of_little_evidence(FitResult& result) {
+  const Eigen::VectorXd observed = result.predicted + result.residual;
+  if (observed.size() == 0) return;
+  const double largest = observed.cwiseAbs().maxCoeff();
+  if (result.residual.cwiseAbs().maxCoeff() <= kRounding * largest) {
+    result.warnings.push_back(
+        "the model meets every row exactly: nothing is left to tell the uncertainties from");
+    return;
+  }
+  const double range = observed.maxCoeff() - observed.minCoeff();
+  for (const Estimate& e : result.estimates) {
+    const double expanded = e.coverage_factor * e.standard_error;
+    if (e.held || !(expanded > std::max(std::abs(e.value), kFarBeyond * range))) continue;
+    const config::Rounded r = config::rounded(e.value, expanded);
+    result.warnings.push_back(
+        fmt::format("{} = {} +- {} {} is not determined by these data: its term hardly varies, or "
+                    "others can stand for it",
+                    e.name, r.value, r.uncertainty, e.unit));
   }
 }
 

@@ -40,6 +40,9 @@ Status fill_coloured_noise(FitWork& work);
 /// Estimates with their uncertainty, and warnings of inner parameters that are not identified.
 void fill_estimates(FitWork& work);
 void warn_of_correlation(FitResult& result);
+/// Of an exact fit, and of coefficients whose uncertainty exceeds themselves and, for one unit of
+/// their term, anything that was measured.
+void warn_of_little_evidence(FitResult& result);
 /// The model file with the results in it; terms that were left out whole are not in it.
 config::ModelFile fitted_model(const FitWork& work);
 

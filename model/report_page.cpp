@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "config/rounding.hpp"
 #include "config/units.hpp"
 #include "model/svg_plot.hpp"
 
@@ -109,14 +110,8 @@ std::pair<std::string, std::string> value_and_uncertainty(const Estimate& e) {
   if (std::isnan(e.value)) return {"not determined", ""};
   if (e.held) return {fmt::format("{:.6g}", e.value), "held"};
   const double expanded = e.coverage_factor * e.standard_error;
-  if (!std::isfinite(expanded)) return {fmt::format("{:.6g}", e.value), "unknown"};
-  if (!(expanded > 0.0)) return {fmt::format("{:.6g}", e.value), "0"};
-  const int decimals = 1 - static_cast<int>(std::floor(std::log10(expanded)));
-  constexpr int kMostDecimals = 6;
-  if (decimals < 0 || decimals > kMostDecimals) {
-    return {fmt::format("{:.6g}", e.value), fmt::format("{:.2g}", expanded)};
-  }
-  return {fmt::format("{:.{}f}", e.value, decimals), fmt::format("{:.{}f}", expanded, decimals)};
+  const config::Rounded r = config::rounded(e.value, expanded);
+  return {r.value, std::isfinite(expanded) ? r.uncertainty : "unknown"};
 }
 
 }  // namespace

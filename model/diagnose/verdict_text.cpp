@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "config/rounding.hpp"
 #include "model/conclusions.hpp"
 
 namespace fogbench::model {
@@ -41,8 +42,9 @@ std::string effect_sentence(const MissingEffect& m) {
   std::string line = m.found.effect + ": ";
   for (std::size_t i = 0; i < m.estimates.size(); ++i) {
     const Estimate& e = m.estimates[i];
-    line += fmt::format("{}{} = {:.4g} +- {:.2g} {}", i > 0 ? ", " : "", e.name, e.value,
-                        e.coverage_factor * e.standard_error, e.unit);
+    const config::Rounded r = config::rounded(e.value, e.coverage_factor * e.standard_error);
+    line += fmt::format("{}{} = {} +- {} {}", i > 0 ? ", " : "", e.name, r.value, r.uncertainty,
+                        e.unit);
   }
   line += fmt::format("; {}, the RMS residual falls to {:.3g} deg/h",
                       probability_text(m.found.p_value), m.rms_after);

@@ -50,6 +50,15 @@ TEST_F(FogbenchTest, CompareSaysWhatTheTwoMagneticTestsTell) {
   EXPECT_THAT(second.out, HasSubstr("their direction is kept to 3.8 deg. That is not noise"));
 }
 
+TEST_F(FogbenchTest, CompareSaysBeforeTheWorkThatAReportCannotBeWritten) {
+  const std::string page = (folder_ / "no" / "such.html").string();
+  // The data do not exist either: which of the two is told shows which was looked at first.
+  for (const std::string command : {"compare", "diagnose"}) {
+    expect_refused(fogbench({command, "missing.csv", "--model", "thermal", "--report", page}), 3,
+                   page);
+  }
+}
+
 TEST_F(FogbenchTest, CompareWritesAReport) {
   const std::string page = (folder_ / "page.html").string();
   ASSERT_EQ(fogbench({"compare", published("paper-thermal.csv"), "--model", "paper-thermal",
