@@ -2,7 +2,6 @@
 // One question to the diagnosis: a table of the foreign bench with something known hidden in it (or
 // nothing), and what became of the answer.
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>

@@ -25,7 +25,7 @@ enum class Design {
   kThermalCooling,  ///< the same with a cooling branch: 550 rows
   kTurntable,       ///< a turn of 60 deg seven times, there and back: 78 rows
   kMixed,           ///< thermal steps, then the three axes at two temperatures: 460 rows
-  kLong,            ///< two thermal cycles with the three axes at three temperatures: 1,500 rows
+  kLong,            ///< two thermal cycles with the three axes at three temperatures: 1,445 rows
   kTwoRuns,         ///< the magnetic test twice, power off between: 150 rows
 };
 
