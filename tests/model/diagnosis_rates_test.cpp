@@ -55,7 +55,7 @@ TEST(DiagnosisRates, NoiseAloneIsRarelyTakenForAnEffect) {
   for (const char* noise : {"white", "flicker", "walk", "navigation", "fractional", "tails"}) {
     cases.push_back({.part = "rates", .design = Design::kMagnetic, .noise = noise});
   }
-  constexpr int kEach = 8;
+  constexpr int kEach = 6;
   EXPECT_LE(misses(cases, kEach, [](Outcome o) { return o == Outcome::kAdequate; }),
             most_of(kEach * static_cast<int>(cases.size()), 0.05));
 }
@@ -69,7 +69,7 @@ TEST(DiagnosisRates, OneEffectIsNamed) {
   for (const char* id : {"temperature_quadratic", "temperature_rate_lagged"}) {
     cases.push_back({.part = "rates", .design = Design::kThermal, .hidden = {id}, .s = 12.0});
   }
-  constexpr int kEach = 3;
+  constexpr int kEach = 2;
   EXPECT_LE(misses(cases, kEach, named), most_of(kEach * static_cast<int>(cases.size()), 0.05));
 }
 
@@ -83,7 +83,7 @@ TEST(DiagnosisRates, TwoEffectsAreBothNamed) {
        .design = Design::kMagnetic,
        .hidden = {"magnetic_saturation_x", "magnetic_settling_z"},
        .s = 16.0}};
-  constexpr int kEach = 4;
+  constexpr int kEach = 3;
   EXPECT_LE(misses(cases, kEach, named), most_of(kEach * static_cast<int>(cases.size()), 0.1));
 }
 
@@ -93,7 +93,7 @@ TEST(DiagnosisRates, WhatTheCatalogueDoesNotHoldIsSaidToBeSo) {
                          "outside_pulse"}) {
     cases.push_back({.part = "rates", .design = Design::kMagnetic, .hidden = {id}, .s = 16.0});
   }
-  constexpr int kEach = 3;
+  constexpr int kEach = 2;
   EXPECT_LE(misses(cases, kEach, flagged), most_of(kEach * static_cast<int>(cases.size()), 0.05));
 }
 
@@ -103,7 +103,7 @@ TEST(DiagnosisRates, ALoopThatRelaxesIsStillHysteresis) {
                                           .hidden = {"magnetic_hysteresis_z"},
                                           .shape = Shape::kOther,
                                           .s = 20.0}};
-  constexpr int kEach = 6;
+  constexpr int kEach = 3;
   EXPECT_LE(misses(cases, kEach, named), most_of(kEach, 0.1));
 }
 
