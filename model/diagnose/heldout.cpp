@@ -87,6 +87,8 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
   const std::size_t folds = std::min(kFolds, n);
   if (n < p + 2 || folds < 2) return kUnknown;
 
+  const Index rank =
+      Eigen::ColPivHouseholderQR<MatrixXd>(system->x(system->complete, Eigen::all)).rank();
   double squares = 0.0;
   std::size_t count = 0;
   for (std::size_t fold = 0; fold < folds; ++fold) {
@@ -105,7 +107,7 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
       }
     }
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(x);
-    if (qr.rank() < x.cols()) continue;  // the block held something that nothing else shows
+    if (qr.rank() < rank) continue;  // the block held something that nothing else shows
     const VectorXd beta = qr.solve(y);
     squares += (system->y(left) - system->x(left, Eigen::all) * beta).squaredNorm();
     count += left.size();

@@ -19,7 +19,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kGridPoints = 20;       // of an inner parameter
-constexpr int kMostJumpPlaces = 120;  // of an instant
+constexpr int kMostJumpPlaces = 400;  // of an instant
+// Each run more is another candidate; with many of them every scatter between runs looks like one.
+constexpr std::size_t kMostRuns = 8;
 // A user's inner parameter is looked for within this factor of the value that he gave.
 constexpr double kUsersRange = 5.0;
 constexpr double kRipplePeriods = 1.2;  // fewer inside the range look like a polynomial
@@ -147,6 +149,12 @@ Status add_changes_between_runs(LibraryBuilder& builder) {
   const Signals& signals = builder.signals();
   const std::size_t runs =
       signals.runs().size() - (builder.source().table.has_quiet_record() ? 1 : 0);
+  if (runs > kMostRuns) {
+    builder.refuse("bias_change_between_runs",
+                   fmt::format("the table has {} runs; changes are looked for between at most {}",
+                               runs, kMostRuns));
+    return {};
+  }
   for (std::size_t run = 1; run < runs; ++run) {
     const std::string suffix = runs > 2 ? fmt::format("_{}", run + 1) : std::string();
     const auto since = [&](const std::string& what) {

@@ -39,7 +39,8 @@ struct Candidate {
   std::vector<Shape> shapes;
   /// The variable of which the effect is a curve: no memory, nothing else. Empty: it is more.
   std::string curve_over;
-  bool slow = false;  ///< acts on the scale of the whole run: a random walk may look like it
+  bool pulse = false;  ///< begins and ends at an instant: two jumps
+  bool slow = false;   ///< acts on the scale of the whole run: a random walk may look like it
   std::vector<Block> blocks;
 
   bool shadow() const { return kind == Kind::kShadow; }

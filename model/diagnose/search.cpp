@@ -214,11 +214,16 @@ class Search {
   /// A shape from outside the catalogue that leads by more than the effect's own world allows says
   /// that the effect is not the truth.
   void face_shadows(Found& f, Stage& stage) {
-    if (stage.shadows().empty()) return;
     const auto own = static_cast<Index>(f.candidate);
-    const Index shadow = stage.best(stage.shadows());
+    std::vector<Index> shadows = stage.shadows();
+    // That one jump is not two was settled step by step, where the jump's place is exact.
+    if (stage.candidate(own).instant()) {
+      std::erase_if(shadows, [&](Index c) { return stage.candidate(c).pulse; });
+    }
+    if (shadows.empty()) return;
+    const Index shadow = stage.best(shadows);
     const double ahead = stage.lead()[shadow] - stage.lead()[own];
-    const double p = ahead > 0.0 ? stage.plausible(own, ahead, stage.shadows()) : 1.0;
+    const double p = ahead > 0.0 ? stage.plausible(own, ahead, shadows) : 1.0;
     convict(stage.candidate(shadow).name, p, kOutside);
     if (p <= kOutside) return;
     f.shape_leads = ahead > kClearlyAhead;

@@ -60,7 +60,7 @@ void add_temperature_shadows(LibraryBuilder& builder, const MovingSignal& t) {
 /// every pair of edges is tried. In long ones lengths grow by a ratio, places by a part of them.
 void add_pulses(LibraryBuilder& builder) {
   const Signals& signals = builder.signals();
-  Candidate pulse{.name = "a temporary pulse in time"};
+  Candidate pulse{.name = "a temporary pulse in time", .pulse = true};
   const auto add = [&](std::size_t begin, Index from, Index length) {
     VectorXd column = VectorXd::Zero(static_cast<Index>(signals.rows()));
     column.segment(static_cast<Index>(begin) + from, length).setOnes();
