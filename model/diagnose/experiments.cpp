@@ -298,7 +298,7 @@ void add_experiments_at_rest(List& list, const BenchState& state) {
     }
     list.add("azimuths",
              "stand at further azimuths without field, five minutes each at 0, 90, 180, "
-             "270 and 0 deg (rotate and wait)",
+             "270 and 0 deg (azimuths)",
              bench, kAzimuth);
   }
   {
