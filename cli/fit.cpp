@@ -1,23 +1,20 @@
 // fogbench fit: fits an error model to measurements and writes the fitted model file.
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
 #include "cli/common_options.hpp"
+#include "cli/fit_record.hpp"
 #include "cli/load_table.hpp"
 #include "cli/output.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
-#include "daemon/file_hash.hpp"
 #include "daemon/run_options.hpp"
-#include "drivers/clock.hpp"
 #include "model/fit.hpp"
 
 namespace fogbench::cli {
@@ -114,22 +111,6 @@ nlohmann::json to_json(const model::FitResult& result) {
     document["noise"]["K_deg_per_h_per_sqrt_h"] = noise.rate_random_walk_deg_per_h_per_sqrt_h;
   }
   return document;
-}
-
-/// Where the numbers came from, and when.
-Status sign(config::FitRecord& record, const DataOptions& data) {
-  for (const std::string& name : data.data) {
-    record.data += (record.data.empty() ? "" : ", ") + name;
-    std::error_code ignored;  // what is no file is a run of the store
-    if (!std::filesystem::is_regular_file(name, ignored)) continue;
-    const Result<std::string> hash = daemon::file_sha256(name);
-    if (!hash) return hash.error();
-    record.data_sha256 += (record.data_sha256.empty() ? "" : ", ") + *hash;
-  }
-  const auto now = std::chrono::floor<std::chrono::seconds>(drivers::SteadyClock().wall_now());
-  record.fitted_at = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
-  record.software_version = FOGBENCH_VERSION;
-  return {};
 }
 
 Result<ExitStatus> run_fit(const FitCommandOptions& options) {

@@ -10,6 +10,7 @@
 
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
+#include "cli/shell_word.hpp"
 #include "daemon/export.hpp"
 #include "daemon/run_log_reader.hpp"
 #include "daemon/run_table.hpp"
@@ -114,6 +115,16 @@ std::string data_name(const DataOptions& options) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+std::string data_arguments(const DataOptions& options) {
+  std::string out;
+  for (const std::string& data : options.data) out += " " + shell_word(data);
+  for (const std::string& column : options.columns) out += " --column " + shell_word(column);
+  if (!options.segment.empty()) out += " --segment " + shell_word(options.segment);
+  if (options.unfinished) out += " --unfinished";
+  if (!options.store.empty()) out += " --store " + shell_word(options.store);
+  return out.substr(out.empty() ? 0 : 1);
+}
+
 Result<model::Table> load_table(const DataOptions& options) {
   const auto renames = parse_renames(options.columns);
   if (!renames) return renames.error();
@@ -129,7 +140,7 @@ Result<model::Table> load_table(const DataOptions& options) {
     }
   }
   if (!all) return Error{ErrorCode::kUsage, "no measurements were named"};
-  if (options.segment.empty()) return *all;
+  if (options.segment.empty()) return std::move(*all);
 
   std::vector<bool> matches;
   for (const std::string& segment : all->segment().values) {

@@ -26,6 +26,9 @@ void add_data_options(CLI::App& command, DataOptions& options, DataCount count =
 /// For headings: "run 7", "STORE.db#7, file.csv".
 std::string data_name(const DataOptions& options);
 
+/// DATA and its options as a shell takes them, for a command that is proposed next.
+std::string data_arguments(const DataOptions& options);
+
 /// The tables one after the other. With several, the run of each row is "DATA/run", so that test 1
 /// of two records stays two runs.
 /// Errors: kBadInput (no such file or run, not CSV, no row matches the segment), kStore.

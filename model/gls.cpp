@@ -47,6 +47,7 @@ double log_gamma_p(double a, double x) {
 
 /// Columns of X that are linearly independent of those kept before them, by pivoted QR.
 std::vector<Index> independent_columns(const MatrixXd& x) {
+  if (x.cols() == 0) return {};  // every term is held
   VectorXd norms = x.colwise().norm();
   for (double& norm : norms) norm = norm > 0.0 ? norm : 1.0;
   Eigen::ColPivHouseholderQR<MatrixXd> qr(x * norms.cwiseInverse().asDiagonal());

@@ -96,9 +96,11 @@ double noise_rms(const Windows& windows, const NoiseCoefficients& noise, const M
   boost::random::normal_distribution<double> normal;
   const MatrixXd units =
       MatrixXd::NullaryExpr(windows.rows(), kDraws, [&](Index, Index) { return normal(engine); });
-  const MatrixXd e = (*whitener)->colour(units);
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr((*whitener)->whiten(columns));
-  const MatrixXd left = e - columns * qr.solve((*whitener)->whiten(e));
+  MatrixXd left = (*whitener)->colour(units);
+  if (columns.cols() > 0) {
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr((*whitener)->whiten(columns));
+    left -= columns * qr.solve((*whitener)->whiten(left));
+  }
   return std::sqrt(left.topRows(bench_rows).squaredNorm() /
                    static_cast<double>(bench_rows * kDraws));
 }
@@ -145,6 +147,7 @@ class Work {
     const SearchResult found = search(input_of_search, search_options);
     d_.not_testable = library->not_testable;
     d_.bounds = found.bounds;
+    d_.judged = !found.p_of_step.empty() || found.p_outside < 1.0;
     if (!found.p_of_step.empty()) d_.p_adequate = found.p_of_step.front();
 
     tell("refitting with what was found", 0.8);
@@ -152,6 +155,7 @@ class Work {
 
     tell("looking for what has no name", 0.9);
     const MatrixXd last = base_with(input_of_search, found.found);
+    if (!d_.judged) explain_by_change_of_scale();
     d_.noise_floor =
         noise_rms(table_.windows(), d_.noise, last, table_.bench_rows(), options_.seed);
     const Adequacy adequacy =
@@ -208,6 +212,48 @@ class Work {
     }
   }
 
+  /// Too few rows for a search, but two runs whose magnetic coefficients differ by one factor: the
+  /// comparison's test of that needs no more than the coefficients.
+  void explain_by_change_of_scale() {
+    if (d_.before.changes.size() != 1 || !d_.before.changes.front().scale_changed) return;
+    const std::string id = "magnetic_change_between_runs";
+    std::string sum;
+    for (const Estimate& e : d_.before.fit.estimates) {
+      if (!e.name.starts_with("magnetic_linear_")) continue;
+      sum += fmt::format("{}({:.6g}) * field_{}_ut / 100", sum.empty() ? "" : " + ", e.value,
+                         e.name.back());
+    }
+    config::ModelFile wider = model_;
+    config::ModelTerm term;
+    term.effect = id;
+    term.expression = fmt::format("(run_index >= 1) * ({})", sum);
+    term.unit = "relative";
+    wider.terms.push_back(std::move(term));
+    const auto refit = fit(d_.table, wider, {});
+    if (!refit) return;
+    d_.after = *refit;
+    MissingEffect missing{.found = {.effect = id}, .terms = {id}, .estimates = {}};
+    missing.found.p_value = d_.before.changes.front().p_repeat;
+    missing.estimates.push_back(refit->estimates.back());
+    missing.rms_after = refit->rms;
+    missing.heldout_rms_after = heldout(*refit);
+    d_.ladder.push_back({id, missing.rms_after, missing.heldout_rms_after});
+    d_.p_adequate = missing.found.p_value;
+    d_.missing.push_back(std::move(missing));
+  }
+
+  /// Independent noise has no coefficients: that of white noise with the same scatter in windows of
+  /// three minutes, which is what a bench measures next.
+  NoiseCoefficients noise_to_plan_with() const {
+    constexpr double kWindowH = 180.0 / 3600.0;
+    NoiseCoefficients out = d_.noise;
+    const double scatter = d_.after.residual_standard_deviation;
+    if (!d_.after.coloured && std::isfinite(scatter)) {
+      out.angle_random_walk_deg_per_sqrt_h = scatter * std::sqrt(kWindowH);
+    }
+    return out;
+  }
+
   void conclude(const SearchResult& found, const Adequacy& adequacy) {
     d_.unexplained.p_value = adequacy.p_value;
     const bool uneven = adequacy.p_value <= kShareOfSmooth * options_.false_alarm_rate;
@@ -224,8 +270,8 @@ class Work {
     } else if (!d_.missing.empty()) {
       d_.verdict = Verdict::kMissingEffect;
     }
-    d_.next_measurements =
-        next_measurements({d_.table, d_.after.fitted, d_.noise, d_.ambiguous, d_.not_testable});
+    d_.next_measurements = next_measurements(
+        {d_.table, d_.after.fitted, noise_to_plan_with(), d_.ambiguous, d_.not_testable});
     d_.sentences = verdict_in_words(d_);
   }
 

@@ -49,6 +49,7 @@ struct Unexplained {
 struct Diagnosis {
   Verdict verdict = Verdict::kNothingMissing;
   double p_adequate = 1.0;  ///< of the model as it came
+  bool judged = true;       ///< false: too few rows beside the terms to tell anything
   double false_alarm_rate = 0.05;
   Table table;  ///< what was analysed: complete rows, binned where there were many
   std::size_t rows_per_bin = 1;

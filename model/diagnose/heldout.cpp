@@ -88,7 +88,8 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
   if (n < p + 2 || folds < 2) return kUnknown;
 
   const Index rank =
-      Eigen::ColPivHouseholderQR<MatrixXd>(system->x(system->complete, Eigen::all)).rank();
+      p > 0 ? Eigen::ColPivHouseholderQR<MatrixXd>(system->x(system->complete, Eigen::all)).rank()
+            : 0;
   double squares = 0.0;
   std::size_t count = 0;
   for (std::size_t fold = 0; fold < folds; ++fold) {
@@ -106,9 +107,12 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
         y = (*whitener)->whiten(y);
       }
     }
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(x);
-    if (qr.rank() < rank) continue;  // the block held something that nothing else shows
-    const VectorXd beta = qr.solve(y);
+    VectorXd beta(0);  // every term is held: nothing to fit
+    if (p > 0) {
+      const Eigen::ColPivHouseholderQR<MatrixXd> qr(x);
+      if (qr.rank() < rank) continue;  // the block held something that nothing else shows
+      beta = qr.solve(y);
+    }
     squares += (system->y(left) - system->x(left, Eigen::all) * beta).squaredNorm();
     count += left.size();
   }

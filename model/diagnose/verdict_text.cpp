@@ -12,6 +12,12 @@ namespace {
 std::string verdict_sentence(const Diagnosis& d) {
   switch (d.verdict) {
     case Verdict::kNothingMissing:
+      if (!d.judged) {
+        return fmt::format(
+            "Cannot tell whether anything is missing: {} rows are too few beside {} terms, or no "
+            "effect can show in them.",
+            d.table.rows(), d.before.fit.fitted.terms.size());
+      }
       return fmt::format(
           "Nothing is missing that these data can show ({}): what is left, {:.3g} "
           "deg/h RMS, is noise.",
@@ -71,6 +77,10 @@ std::vector<std::string> verdict_in_words(const Diagnosis& d) {
   if (!d.unexplained.suggestion.empty()) {
     out.push_back(fmt::format("A shape to start from (a guess, no catalogue effect has it): {}.",
                               d.unexplained.suggestion));
+  }
+  // Then what a comparison says is all that can be said.
+  if (!d.judged) {
+    out.insert(out.end(), d.before.sentences.begin(), d.before.sentences.end());
   }
   return out;
 }

@@ -28,24 +28,17 @@ struct Bin {
   std::size_t begin, end;
 };
 
-/// The table's rows at `order`.
-Table permuted(const Table& table, const std::vector<std::size_t>& order) {
-  Table out;
-  for (const std::string& name : table.column_names()) {
-    const auto values = table.column(name);
-    std::vector<double> column;
-    column.reserve(order.size());
-    for (const std::size_t row : order) column.push_back(values[row]);
-    out.set_column(name, std::move(column));
-  }
-  const auto texts = [&](const TextColumn& from) {
-    TextColumn to{from.values, {}};
-    to.index.reserve(order.size());
-    for (const std::size_t row : order) to.index.push_back(from.index[row]);
-    return to;
-  };
-  out.set_run(texts(table.run()));
-  out.set_segment(texts(table.segment()));
+TextColumn picked(const TextColumn& from, const std::vector<std::size_t>& rows) {
+  TextColumn to{from.values, {}};
+  to.index.reserve(rows.size());
+  for (const std::size_t row : rows) to.index.push_back(from.index[row]);
+  return to;
+}
+
+std::vector<double> picked(std::span<const double> values, const std::vector<std::size_t>& rows) {
+  std::vector<double> out;
+  out.reserve(rows.size());
+  for (const std::size_t row : rows) out.push_back(values[row]);
   return out;
 }
 
@@ -74,8 +67,10 @@ std::vector<std::size_t> order_of(const Table& table, const std::string& observa
   const auto key = [&](std::size_t row) {
     return std::pair(rank[table.run().index[row]], time[row]);
   };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  const auto before = [&](std::size_t a, std::size_t b) { return key(a) < key(b); };
+  if (!std::is_sorted(order.begin(), order.end(), before)) {
+    std::stable_sort(order.begin(), order.end(), before);
+  }
   if (!table.has("time_s")) return order;
   const auto value = table.column(observable);
   const auto repeats = [&](std::size_t a, std::size_t b) {
@@ -83,6 +78,22 @@ std::vector<std::size_t> order_of(const Table& table, const std::string& observa
   };
   order.erase(std::unique(order.begin(), order.end(), repeats), order.end());
   return order;
+}
+
+/// Squares and products of larger numbers overflow; a length or a scatter is not negative.
+Status check_numbers(const Table& table) {
+  constexpr double kLargest = 1e60;
+  for (const std::string& name : table.column_names()) {
+    const double least = name == "duration_s" || name == kStdError ? 0.0 : -kLargest;
+    const auto values = table.column(name);
+    const auto wrong = std::find_if(values.begin(), values.end(),
+                                    [&](double v) { return v < least || v > kLargest; });
+    if (wrong == values.end()) continue;
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("column {}, row {}: found {:g}, expected {:g} to {:g}", name,
+                             wrong - values.begin() + 1, *wrong, least, kLargest)};
+  }
+  return {};
 }
 
 /// Rows on which the model can be evaluated.
@@ -93,18 +104,14 @@ Result<std::vector<std::size_t>> complete_rows(const Table& table, const config:
   const Signals signals(table, model.reference_temperature_c);
   const auto design = Design::make(signals, model, false);
   if (!design) return design.error();
-  const auto complete = [&](std::size_t row) {
-    return std::isfinite(table.column(model.observable)[row]);
-  };
-  std::vector<std::string> needed;
+  std::vector<std::span<const double>> needed{table.column(model.observable)};
   for (const std::string& name : design->signals_needed()) {
-    if (table.has(name)) needed.push_back(name);
+    if (table.has(name)) needed.push_back(table.column(name));
   }
   std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const bool all = complete(row) && std::all_of(needed.begin(), needed.end(), [&](const auto& n) {
-                       return std::isfinite(table.column(n)[row]);
-                     });
+    const bool all = std::all_of(needed.begin(), needed.end(),
+                                 [&](const auto& column) { return std::isfinite(column[row]); });
     if (all) rows.push_back(row);
   }
   if (rows.empty()) {
@@ -115,81 +122,74 @@ Result<std::vector<std::size_t>> complete_rows(const Table& table, const config:
   return rows;
 }
 
-/// Fills gaps with the number before (or, at the start, after) them; a column that is mostly gaps
-/// is dropped.
-void fill_gaps(Table& table) {
-  for (const std::string& name : table.column_names()) {
-    const auto values = table.column(name);
-    const auto filled =
-        std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-    if (filled == static_cast<std::ptrdiff_t>(values.size())) continue;
-    if (static_cast<double>(filled) < kLeastFilled * static_cast<double>(values.size())) {
-      table.set_dropped(name, fmt::format("column {}: has a number in {} of {} rows, expected more",
-                                          name, filled, values.size()));
-      continue;
-    }
-    std::vector<double> column(values.begin(), values.end());
-    double last =
-        *std::find_if(column.begin(), column.end(), [](double v) { return std::isfinite(v); });
-    for (double& v : column) {
-      if (std::isfinite(v)) last = v;
-      v = last;
-    }
-    table.set_column(name, std::move(column));
+/// Fills gaps with the number before (or, at the start, after) them. An error says that the column
+/// is mostly gaps.
+Status fill_gaps(const std::string& name, std::vector<double>& column) {
+  const auto number = [](double v) { return std::isfinite(v); };
+  const auto filled = std::count_if(column.begin(), column.end(), number);
+  if (filled == std::ssize(column)) return {};
+  if (static_cast<double>(filled) < kLeastFilled * static_cast<double>(column.size())) {
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("column {}: has a number in {} of {} rows, expected more", name,
+                             filled, column.size())};
   }
+  double last = *std::find_if(column.begin(), column.end(), number);
+  for (double& v : column) {
+    if (std::isfinite(v)) last = v;
+    v = last;
+  }
+  return {};
 }
 
-/// Gives every row a centre and a duration, windows of a run never overlapping. A time that does
-/// not advance is of no use: then the rows follow each other.
-void set_windows(Table& table) {
-  const auto n = table.rows();
-  std::vector<double> time(n), duration(n, 0.0);
-  const auto& run = table.run().index;
-  const bool timed = table.has("time_s");
-  if (timed) std::copy_n(table.column("time_s").begin(), n, time.begin());
-  bool advances = timed;
+/// Centre and duration of every row, windows of a run never overlapping.
+struct RowTimes {
+  std::vector<double> centre, duration;
+  bool usable = true;  ///< false: the time does not advance, the rows follow each other
+};
+
+/// Empty `time` or `duration`: the table has none.
+RowTimes times_of(const TextColumn& runs, std::vector<double> time, std::vector<double> duration) {
+  const auto& run = runs.index;
+  const std::size_t n = run.size();
+  RowTimes out{std::move(time), std::move(duration), true};
+  out.usable = !out.centre.empty();
   std::vector<double> steps;
+  for (std::size_t i = 1; i < n && out.usable; ++i) {
+    if (run[i] != run[i - 1]) continue;
+    steps.push_back(out.centre[i] - out.centre[i - 1]);
+    out.usable = steps.back() > 0.0;
+  }
+  if (!out.usable) {
+    out.centre.resize(n);
+    std::iota(out.centre.begin(), out.centre.end(), 0.0);
+    out.duration.assign(n, 1.0);
+    return out;
+  }
+  double usual = 1.0;
+  if (!steps.empty()) {
+    const auto middle = steps.begin() + std::ssize(steps) / 2;
+    std::nth_element(steps.begin(), middle, steps.end());
+    usual = *middle;
+  }
+  out.duration.resize(n, 0.0);
+  for (double& d : out.duration) d = d > 0.0 ? d : usual;
   for (std::size_t i = 1; i < n; ++i) {
     if (run[i] != run[i - 1]) continue;
-    steps.push_back(time[i] - time[i - 1]);
-    advances = advances && steps.back() > 0.0;
+    const double gap = out.centre[i] - out.centre[i - 1];
+    if (0.5 * (out.duration[i] + out.duration[i - 1]) <= gap) continue;
+    out.duration[i] = std::min(out.duration[i], gap);
+    out.duration[i - 1] = std::min(out.duration[i - 1], gap);
   }
-  if (!advances) {
-    if (timed) table.set_dropped("time_s", "column time_s: stands still or runs backwards");
-    for (std::size_t i = 0; i < n; ++i) time[i] = static_cast<double>(i);
-    duration.assign(n, 1.0);
-  } else {
-    double usual = 1.0;
-    if (!steps.empty()) {
-      std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
-                       steps.end());
-      usual = steps[steps.size() / 2];
-    }
-    if (table.has("duration_s")) {
-      std::copy_n(table.column("duration_s").begin(), n, duration.begin());
-    }
-    for (double& d : duration) d = d > 0.0 ? d : usual;
-    for (std::size_t i = 1; i < n; ++i) {
-      if (run[i] != run[i - 1]) continue;
-      const double gap = time[i] - time[i - 1];
-      const double half = 0.5 * (duration[i] + duration[i - 1]);
-      if (half <= gap) continue;
-      duration[i] *= gap / half;
-      duration[i - 1] *= gap / half;
-    }
-  }
-  if (advances) table.set_column("time_s", time);
-  table.set_column("window_centre_s", std::move(time));
-  table.set_column("window_duration_s", std::move(duration));
+  return out;
 }
 
 /// Neighbouring rows of one run and segment, `per_bin` at a time.
 std::vector<Bin> bins_of(const Table& table, std::size_t per_bin) {
+  const auto &run = table.run().index, &segment = table.segment().index;
   std::vector<Bin> bins;
   for (std::size_t i = 0; i < table.rows(); ++i) {
-    const bool fresh = bins.empty() || i - bins.back().begin >= per_bin ||
-                       table.run().index[i] != table.run().index[i - 1] ||
-                       table.segment().index[i] != table.segment().index[i - 1];
+    const bool fresh = bins.empty() || i - bins.back().begin >= per_bin || run[i] != run[i - 1] ||
+                       segment[i] != segment[i - 1];
     if (fresh) bins.push_back({i, i});
     bins.back().end = i + 1;
   }
@@ -206,42 +206,73 @@ std::vector<Bin> bins_within(const Table& table, std::size_t most) {
   return bins;
 }
 
-Table averaged(const Table& table, const std::vector<Bin>& bins) {
-  Table out;
-  for (const std::string& name : table.column_names()) {
-    const auto values = table.column(name);
-    std::vector<double> column;
-    column.reserve(bins.size());
-    for (const Bin& bin : bins) {
-      const auto count = static_cast<double>(bin.end - bin.begin);
-      double sum = 0.0;
-      for (std::size_t i = bin.begin; i < bin.end; ++i) {
-        sum += name == kStdError ? values[i] * values[i] : values[i];
-      }
-      if (name == kStdError) {
-        column.push_back(std::sqrt(sum) / count);
-      } else {
-        column.push_back(name.ends_with("duration_s") ? sum : sum / count);
-      }
+/// One number a bin.
+std::vector<double> averaged(const std::string& name, std::span<const double> values,
+                             const std::vector<Bin>& bins) {
+  std::vector<double> column;
+  column.reserve(bins.size());
+  for (const Bin& bin : bins) {
+    const auto count = static_cast<double>(bin.end - bin.begin);
+    double sum = 0.0;
+    for (std::size_t i = bin.begin; i < bin.end; ++i) {
+      sum += name == kStdError ? values[i] * values[i] : values[i];
     }
-    out.set_column(name, std::move(column));
+    if (name == kStdError) {
+      column.push_back(std::sqrt(sum) / count);
+    } else {
+      column.push_back(name.ends_with("duration_s") ? sum : sum / count);
+    }
   }
-  const auto texts = [&](const TextColumn& from) {
-    TextColumn to{from.values, {}};
-    for (const Bin& bin : bins) to.index.push_back(from.index[bin.begin]);
-    return to;
-  };
-  out.set_run(texts(table.run()));
-  out.set_segment(texts(table.segment()));
+  return column;
+}
+
+/// The run and the segment of each bin.
+Table texts_of(const Table& table, const std::vector<Bin>& bins) {
+  std::vector<std::size_t> first;
+  for (const Bin& bin : bins) first.push_back(bin.begin);
+  Table out;
+  out.set_run(picked(table.run(), first));
+  out.set_segment(picked(table.segment(), first));
   return out;
 }
 
+Table averaged(const Table& table, const std::vector<Bin>& bins) {
+  Table out = texts_of(table, bins);
+  for (const std::string& name : table.column_names()) {
+    out.set_column(name, averaged(name, table.column(name), bins));
+  }
+  return out;
+}
+
+/// The rows in order, without gaps, at most kMostFineRows. Column by column: a table of millions of
+/// rows is not copied.
 Table in_order(const Table& table, const std::string& observable,
                const std::vector<std::size_t>& rows) {
-  Table out = permuted(table, order_of(table, observable, rows));
-  fill_gaps(out);
-  set_windows(out);
-  if (out.rows() > kMostFineRows) out = averaged(out, bins_within(out, kMostFineRows));
+  const std::vector<std::size_t> order = order_of(table, observable, rows);
+  Table texts;
+  texts.set_run(picked(table.run(), order));
+  texts.set_segment(picked(table.segment(), order));
+  const std::vector<Bin> bins =
+      order.size() > kMostFineRows ? bins_within(texts, kMostFineRows) : bins_of(texts, 1);
+
+  Table out = texts_of(texts, bins);
+  std::vector<double> time, duration;
+  for (const std::string& name : table.column_names()) {
+    std::vector<double> column = picked(table.column(name), order);
+    if (const Status filled = fill_gaps(name, column); !filled) {
+      out.set_dropped(name, filled.error().message);
+      continue;
+    }
+    out.set_column(name, averaged(name, column, bins));
+    if (name == "time_s") time = std::move(column);
+    if (name == "duration_s") duration = std::move(column);
+  }
+  const RowTimes times = times_of(texts.run(), std::move(time), std::move(duration));
+  if (!times.usable && out.has("time_s")) {
+    out.set_dropped("time_s", "column time_s: stands still or runs backwards");
+  }
+  out.set_column("window_centre_s", averaged("window_centre_s", times.centre, bins));
+  out.set_column("window_duration_s", averaged("window_duration_s", times.duration, bins));
   return out;
 }
 
@@ -294,6 +325,13 @@ config::ModelTerm quiet_bias() {
 
 Result<WorkingTable> WorkingTable::make(const Table& table, const config::ModelFile& model,
                                         const Table* quiet) {
+  for (const Table* its : {&table, quiet}) {
+    if (its == nullptr) continue;
+    if (Status sized = check_numbers(*its); !sized) return sized.error();
+  }
+  if (quiet != nullptr && !quiet->has(model.observable)) {
+    return Error{ErrorCode::kBadInput, "static record: " + quiet->why_missing(model.observable)};
+  }
   const auto rows = complete_rows(table, model);
   if (!rows) return rows.error();
   WorkingTable out;
