@@ -129,7 +129,7 @@ ordered_json to_json(const model::Diagnosis& d, const DiagnoseOptions& options) 
   const std::string& suggestion = d.unexplained.suggestion;
   // Without times and durations the noise is only known to be independent from row to row.
   const auto noise = [&](double value) {
-    return d.after.coloured ? ordered_json(value) : ordered_json();
+    return d.table.has("time_s") ? ordered_json(value) : ordered_json();
   };
   return {{"verdict", model::name_of(d.verdict)},
           {"p_adequate", d.p_adequate},

@@ -156,8 +156,13 @@ class Work {
     tell("looking for what has no name", 0.9);
     const MatrixXd last = base_with(input_of_search, found.found);
     if (!d_.judged) explain_by_change_of_scale();
-    d_.noise_floor =
-        noise_rms(table_.windows(), d_.noise, last, table_.bench_rows(), options_.seed);
+    // On the search's own windows: a fit of few rows, or of rows without a duration, has no noise
+    // coefficients.
+    if (const auto noise = gls(*shapes, last, base->y)) {
+      const NoiseCoefficients& left = noise->noise.noise;
+      d_.noise_floor = noise_rms(table_.windows(), left, last, table_.bench_rows(), options_.seed);
+      if (d_.table.has("time_s")) d_.noise = left;
+    }
     const Adequacy adequacy =
         check_adequacy(*shapes, last, base->y, make_smooth_library(source), options_.seed + 77);
     conclude(found, adequacy);
@@ -242,13 +247,13 @@ class Work {
     d_.missing.push_back(std::move(missing));
   }
 
-  /// Independent noise has no coefficients: that of white noise with the same scatter in windows of
-  /// three minutes, which is what a bench measures next.
+  /// Without a time the noise has no coefficients: that of white noise with the same scatter in
+  /// windows of three minutes, which is what a bench measures next.
   NoiseCoefficients noise_to_plan_with() const {
     constexpr double kWindowH = 180.0 / 3600.0;
     NoiseCoefficients out = d_.noise;
     const double scatter = d_.after.residual_standard_deviation;
-    if (!d_.after.coloured && std::isfinite(scatter)) {
+    if (!d_.table.has("time_s") && std::isfinite(scatter)) {
       out.angle_random_walk_deg_per_sqrt_h = scatter * std::sqrt(kWindowH);
     }
     return out;

@@ -6,6 +6,7 @@
 //   -> adequate | missing_effect | ambiguous | unexplained
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -56,8 +57,9 @@ struct Diagnosis {
   Comparison before;         ///< the model as it came, on `table`: fit and failing regions
   FitResult after;           ///< with the missing effects, on `table`; as before.fit if none
   double heldout_rms = 0.0;  ///< of the model as it came
-  double noise_floor = 0.0;  ///< RMS residual that noise alone leaves with the last fit
-  NoiseCoefficients noise;   ///< estimated with the last fit
+  double noise_floor = std::numeric_limits<double>::quiet_NaN();  ///< RMS residual that noise alone
+                                                                  ///< leaves with the last fit
+  NoiseCoefficients noise;                                        ///< estimated with the last fit
   std::vector<MissingEffect> missing;
   std::vector<std::vector<std::string>> ambiguous;
   Unexplained unexplained;
