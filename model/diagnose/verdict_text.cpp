@@ -14,8 +14,9 @@ std::string verdict_sentence(const Diagnosis& d) {
     case Verdict::kNothingMissing:
       if (!d.judged) {
         return fmt::format(
-            "Cannot tell whether anything is missing: {} rows are too few beside {} terms, or no "
-            "effect can show in them.",
+            "Cannot tell whether anything is missing: {} rows beside {} terms, and the noise, "
+            "leave "
+            "nothing in which an effect could show.",
             d.table.rows(), d.before.fit.fitted.terms.size());
       }
       return fmt::format(
