@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <numeric>
 #include <random>
-#include <thread>
 
 #include "model/diagnose/diagnose.hpp"
 #include "model/diagnose/library.hpp"
@@ -103,9 +102,7 @@ TEST(DiagnoseInvariance, RunsInAnyOrder) {
   Table forth = in_run(table, "1"), back = in_run(table, "2");
   forth.append(in_run(table, "2"));
   back.append(in_run(table, "1"));
-  const Diagnosis one = diagnosed(forth);
-  expect_same(one, diagnosed(back));
-  expect_same(one, diagnosed(shuffled(forth)));
+  expect_same(diagnosed(forth), diagnosed(shuffled(back)));
 }
 
 TEST(DiagnoseInvariance, ConstantThatTheBiasTakesUp) {
@@ -129,7 +126,7 @@ TEST(DiagnoseInvariance, ColumnsThatNoEffectKnows) {
   expect_same(reference(), diagnosed(table));
 }
 
-TEST(DiagnoseInvariance, NumberOfThreadsToTheLastBit) {
+TEST(DiagnoseInvariance, WorkersInTurnOnOneProcessorToTheLastBit) {
   cpu_set_t all, one;
   ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
   CPU_ZERO(&one);
@@ -137,7 +134,6 @@ TEST(DiagnoseInvariance, NumberOfThreadsToTheLastBit) {
     if (CPU_ISSET(cpu, &all)) CPU_SET(cpu, &one);
   }
   ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
-  EXPECT_EQ(std::thread::hardware_concurrency(), 1U);
   const Diagnosis alone = diagnosed(trial().table);
   ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
   expect_same(reference(), alone);
