@@ -158,7 +158,8 @@ class Work {
     if (!d_.judged) explain_by_change_of_scale();
     // On the search's own windows: a fit of few rows, or of rows without a duration, has no noise
     // coefficients.
-    if (const auto noise = gls(*shapes, last, base->y)) {
+    if (const auto noise = gls(*shapes, last, base->y);
+        noise && (d_.judged || d_.missing.empty())) {
       const NoiseCoefficients& left = noise->noise.noise;
       d_.noise_floor = noise_rms(table_.windows(), left, last, table_.bench_rows(), options_.seed);
       if (d_.table.has("time_s")) d_.noise = left;

@@ -277,7 +277,9 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
     if (walk_ && c.experiment->key.starts_with("rest_")) text += " and give it as --quiet";
     if (c.times > 1) text += fmt::format(", {} times", c.times);
     text += fmt::format("{}{:.0f} sigma in {:.1f} h", kExpected, c.separation, c.hours());
-    if (out.empty() && c.experiment->key != kRepeat) text += "; " + of_present(pairs);
+    // Of a jump the present run cannot be asked to say whether it would come back.
+    const bool jump = std::find(names.begin(), names.end(), "bias_step") != names.end();
+    if (out.empty() && c.experiment->key != kRepeat && !jump) text += "; " + of_present(pairs);
     out.push_back({names, std::move(text), c.separation, c.hours(), c.times});
   }
   return out;

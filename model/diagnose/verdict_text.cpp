@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "config/rounding.hpp"
 #include "model/conclusions.hpp"
 
@@ -49,6 +51,10 @@ std::string effect_sentence(const MissingEffect& m) {
   std::string line = m.found.effect + ": ";
   for (std::size_t i = 0; i < m.estimates.size(); ++i) {
     const Estimate& e = m.estimates[i];
+    if (std::isnan(e.value)) {
+      line += fmt::format("{}{} not determined", i > 0 ? ", " : "", e.name);
+      continue;
+    }
     const config::Rounded r = config::rounded(e.value, e.coverage_factor * e.standard_error);
     line += fmt::format("{}{} = {} +- {} {}", i > 0 ? ", " : "", e.name, r.value, r.uncertainty,
                         e.unit);
@@ -71,7 +77,11 @@ std::string effect_sentence(const MissingEffect& m) {
 
 std::vector<std::string> verdict_in_words(const Diagnosis& d) {
   std::vector<std::string> out{verdict_sentence(d)};
-  for (const MissingEffect& m : d.missing) out.push_back(effect_sentence(m));
+  const std::string_view lead =
+      d.verdict == Verdict::kUnexplained ? "Nearest of the catalogue, but not enough: " : "";
+  for (const MissingEffect& m : d.missing) {
+    out.push_back(fmt::format("{}{}", lead, effect_sentence(m)));
+  }
   for (const auto& set : d.ambiguous) {
     out.push_back(fmt::format("Cannot tell apart: {}.", fmt::join(set, ", ")));
   }
