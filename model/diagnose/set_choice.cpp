@@ -241,8 +241,13 @@ std::string SetChoice::of_present(const Pairs& pairs) const {
   for (const Weighed& w : weighed_) {
     if (w.experiment->key == kRepeat) once = least(w.squared, pairs);
   }
+  // A jump is sought at the same time in every run: one that does not come back looks like one that
+  // was half as high.
+  const bool jump = std::any_of(effects_.begin(), effects_.end(), [](const Effect* effect) {
+    return effect->info().id == "bias_step";
+  });
   const double times = std::ceil(std::pow(kAim / std::max(once, 1e-9), 2));
-  if (times > kMostPresentTimes) {
+  if (jump || times > kMostPresentTimes) {
     return "repeating the present run would not: they look alike in it";
   }
   return fmt::format("so would {:.0f} more of the present run, in {:.1f} h", times,
@@ -277,9 +282,7 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
     if (walk_ && c.experiment->key.starts_with("rest_")) text += " and give it as --quiet";
     if (c.times > 1) text += fmt::format(", {} times", c.times);
     text += fmt::format("{}{:.0f} sigma in {:.1f} h", kExpected, c.separation, c.hours());
-    // Of a jump the present run cannot be asked to say whether it would come back.
-    const bool jump = std::find(names.begin(), names.end(), "bias_step") != names.end();
-    if (out.empty() && c.experiment->key != kRepeat && !jump) text += "; " + of_present(pairs);
+    if (out.empty() && c.experiment->key != kRepeat) text += "; " + of_present(pairs);
     out.push_back({names, std::move(text), c.separation, c.hours(), c.times});
   }
   return out;

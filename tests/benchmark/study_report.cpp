@@ -158,23 +158,21 @@ std::string figures_table(const std::vector<Record>& records) {
 
 std::string nulls_table(const std::vector<Record>& records) {
   std::string out;
-  put_header(out, {"noise", "design", "trials", "named", "or random walk", "unexplained",
-                   "false alarms", std::string(kTheirs)});
-  std::map<std::pair<std::string, std::string>, Count> counts;
+  put_header(out, {"noise", "trials", "named", "or random walk", "unexplained", "false alarms",
+                   std::string(kTheirs)});
+  std::map<std::string, Count> counts;
   for (const Record& r : records) {
     if (r.part != "nulls") continue;
     const auto alarm = [](Outcome o) { return !silent(o); };
-    counts[{r.noise, r.design}].add(r, alarm);
-    counts[{r.noise, "all"}].add(r, alarm);
+    counts[r.noise].add(r, alarm);
   }
-  for (const auto& [where, count] : counts) {
+  for (const auto& [noise, count] : counts) {
     const auto quiet = count.of[static_cast<std::size_t>(Outcome::kAdequate)];
     const auto doubts = count.of[static_cast<std::size_t>(Outcome::kRightInSet)];
     const auto unexplained = count.of[static_cast<std::size_t>(Outcome::kUnexplained)];
-    out +=
-        fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", where.first, where.second,
-                    count.trials, count.trials - quiet - unexplained - doubts, doubts, unexplained,
-                    rate_text(count.trials - quiet, count.trials), count.baselines_text());
+    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", noise, count.trials,
+                       count.trials - quiet - unexplained - doubts, doubts, unexplained,
+                       rate_text(count.trials - quiet, count.trials), count.baselines_text());
   }
   return out;
 }
@@ -184,32 +182,32 @@ bool right(const Record& r, Outcome o) {
   return r.part == "outside" ? flagged(o) : named(o);
 }
 
-/// Truths in rows, outcomes in columns.
+/// Truths in rows, every s together; outcomes in columns.
 std::string confusion_table(const std::vector<Record>& records, const std::string& part) {
   std::string out;
-  std::vector<std::string> header{"truth", "design", "s", "rho, nearest", "trials"};
+  std::vector<std::string> header{"truth", "design", "rho, nearest", "trials"};
   for (std::size_t i = 0; i < kOutcomes; ++i) {
     header.emplace_back(name_of(static_cast<Outcome>(i)));
   }
   header.emplace_back(part == "outside" ? "flagged" : "right or in a set");
   header.emplace_back(kTheirs);
   put_header(out, header);
-  using Key = std::tuple<std::string, std::string, double>;
+  using Key = std::pair<std::string, std::string>;
   std::map<Key, Count> counts;
   std::map<Key, std::size_t> hits;
   for (const Record& r : records) {
     if (r.part != part) continue;
-    const Key key{r.truth, r.design, r.s};
+    const Key key{r.truth, r.design};
     counts[key].add(r, [&](Outcome o) { return right(r, o); });
     hits[key] += right(r, r.outcome) ? 1 : 0;
   }
   for (const auto& [key, count] : counts) {
-    const auto& [truth, design, s] = key;
+    const auto& [truth, design] = key;
     const auto nearest =
         std::max_element(count.nearest.begin(), count.nearest.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    out += fmt::format("| {} | {} | {:g} | {} {} | {} |", truth, design, s,
-                       median_text(count.cosine), nearest->first, count.trials);
+    out += fmt::format("| {} | {} | {} {} | {} |", truth, design, median_text(count.cosine),
+                       nearest->first, count.trials);
     for (const std::size_t n : count.of) out += n > 0 ? fmt::format(" {} |", n) : " |";
     out += fmt::format(" {} | {} |\n", rate_text(hits[key], count.trials), count.baselines_text());
   }
