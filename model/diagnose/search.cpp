@@ -236,10 +236,10 @@ class Search {
   /// Two curves over one variable are one other curve as well, and nothing in the data says which.
   void doubt_sums_of_one_variable() {
     for (Found& f : found()) {
-      const std::string variable = input_.library.candidates[f.candidate].curve_over;
+      const std::string variable = input_.tried.candidates[f.candidate].curve_over;
       if (variable.empty()) continue;
       const auto curves = std::count_if(found().begin(), found().end(), [&](const Found& other) {
-        return input_.library.candidates[other.candidate].curve_over == variable;
+        return input_.tried.candidates[other.candidate].curve_over == variable;
       });
       if (curves < 2) continue;
       f.or_shape = "one other function of " + variable;
@@ -258,7 +258,7 @@ class Search {
 MatrixXd base_with(const SearchInput& input, const std::vector<Found>& found, const Found* except) {
   MatrixXd base = input.base;
   for (const Found& f : found) {
-    if (&f != except) base = joined(base, columns_of(f, input.library.candidates[f.candidate]));
+    if (&f != except) base = joined(base, columns_of(f, input.tried.candidates[f.candidate]));
   }
   return full_rank(base);
 }

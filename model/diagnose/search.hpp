@@ -56,7 +56,7 @@ struct SearchResult {
 /// What is searched. `base` holds the model's own columns (with the tangents of its inner
 /// parameters), of full rank; y is the observable less the terms that are held.
 struct SearchInput {
-  const Library& library;
+  const Library& tried;
   const NoiseShapes& shapes;
   Eigen::MatrixXd base;
   Eigen::VectorXd y;

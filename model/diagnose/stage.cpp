@@ -29,7 +29,7 @@ Stage::Stage(const SearchInput& input, MatrixXd base, std::uint64_t seed)
     : input_(input),
       base_(std::move(base)),
       seed_(seed),
-      detector_(input.shapes, base_, input.library, input.y),
+      detector_(input.shapes, base_, input.tried, input.y),
       calibration_(detector_.lambdas(detector_.draw(draws_for(input.y.size()), seed))),
       lead_(calibration_.lead(detector_.observed())) {
   for (Index c = 0; c < detector_.candidates(); ++c) {

@@ -18,7 +18,7 @@ class Stage {
 
   const Detector& detector() const { return detector_; }
   const Candidate& candidate(Eigen::Index c) const {
-    return input_.library.candidates[static_cast<std::size_t>(c)];
+    return input_.tried.candidates[static_cast<std::size_t>(c)];
   }
   /// Testable effects and shadows.
   const std::vector<Eigen::Index>& effects() const { return effects_; }
