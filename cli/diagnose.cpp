@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
+#include "cli/diagnosis_json.hpp"
 #include "cli/fit_record.hpp"
 #include "cli/load_table.hpp"
 #include "cli/output.hpp"
@@ -22,8 +23,6 @@
 
 namespace fogbench::cli {
 namespace {
-
-using nlohmann::ordered_json;
 
 struct DiagnoseOptions {
   DataOptions data;
@@ -65,96 +64,6 @@ std::string next_step(const model::Diagnosis& d, const DiagnoseOptions& options)
   return fmt::format(
       "fogbench diagnose {} --model {}{} -o wider.json && fogbench compare {} --model wider.json",
       data, model, candidates, data);
-}
-
-ordered_json missing_json(const model::MissingEffect& m) {
-  ordered_json parameters = ordered_json::object(), coefficients = ordered_json::object(),
-               errors = ordered_json::object(), rivals = ordered_json::array();
-  for (const model::Estimate& e : m.estimates) {
-    // "warm_up.tau" is an inner parameter, "earth_rate_projection.cos" a coefficient.
-    const std::string suffix =
-        e.name.starts_with(m.found.effect + ".") ? e.name.substr(m.found.effect.size() + 1) : "";
-    (e.name == m.inner_name ? parameters[suffix] : coefficients[e.name]) = e.value;
-    errors[e.name] = e.coverage_factor * e.standard_error;
-  }
-  for (const model::Rival& r : m.found.rivals) {
-    rivals.push_back({{"effect", r.effect}, {"probability", r.probability}});
-  }
-  return {{"effect", m.found.effect},
-          {"probability", m.found.probability},
-          {"p_value", m.found.p_value},
-          {"parameters", parameters},
-          {"coefficients", coefficients},
-          {"expanded_uncertainty", errors},
-          {"identified", !m.found.inner_at_edge},
-          {"rms_after", m.rms_after},
-          {"heldout_rms_after", m.heldout_rms_after},
-          {"or_shape", m.found.or_shape.empty() ? ordered_json() : ordered_json(m.found.or_shape)},
-          {"rivals", rivals}};
-}
-
-ordered_json to_json(const model::Diagnosis& d, const DiagnoseOptions& options) {
-  ordered_json failures = ordered_json::array(), missing = ordered_json::array(),
-               not_testable = ordered_json::array(), bounds = ordered_json::array(),
-               next = ordered_json::array(), ladder = ordered_json::array();
-  for (const model::Region& r : d.before.regions) {
-    if (!d.before.noise_known || r.p_family_wise > d.false_alarm_rate) continue;
-    failures.push_back({{"where", r.where},
-                        {"variable", r.variable},
-                        {"range", {r.from, r.to}},
-                        {"residual_deg_per_h", r.offset},
-                        {"z", r.z},
-                        {"says", r.says}});
-  }
-  for (const model::MissingEffect& m : d.missing) missing.push_back(missing_json(m));
-  for (const model::NotTestable& n : d.not_testable) {
-    not_testable.push_back({{"effect", n.effect}, {"because", n.because}});
-  }
-  for (const model::Bound& b : d.bounds) {
-    bounds.push_back(
-        {{"effect", b.effect}, {"absent_or_below", b.absent_or_below}, {"unit", b.unit}});
-  }
-  for (const model::NextMeasurement& n : d.next_measurements) {
-    next.push_back(
-        {{"tells_apart", n.tells_apart},
-         {"do", n.action},
-         {"expected_sigma", n.separation > 0.0 ? ordered_json(n.separation) : ordered_json()},
-         {"bench_hours", n.hours > 0.0 ? ordered_json(n.hours) : ordered_json()}});
-  }
-  for (const model::LadderStep& step : d.ladder) {
-    ladder.push_back({{"added", step.added.empty() ? ordered_json() : ordered_json(step.added)},
-                      {"rms", step.rms},
-                      {"heldout_rms", step.heldout_rms}});
-  }
-  const std::string& suggestion = d.unexplained.suggestion;
-  // Without times and durations the noise is only known to be independent from row to row.
-  const auto noise = [&](double value) {
-    return d.table.has("time_s") ? ordered_json(value) : ordered_json();
-  };
-  return {{"verdict", model::name_of(d.verdict)},
-          {"p_adequate", d.p_adequate},
-          {"false_alarm_rate", d.false_alarm_rate},
-          {"fit",
-           {{"rms_deg_per_h", d.before.fit.rms},
-            {"heldout_rms_deg_per_h", d.heldout_rms},
-            {"noise_floor_deg_per_h", d.noise_floor}}},
-          {"noise",
-           {{"N_deg_per_sqrt_h", noise(d.noise.angle_random_walk_deg_per_sqrt_h)},
-            {"B_deg_per_h", noise(d.noise.bias_instability_deg_per_h)},
-            {"K_deg_per_h_per_sqrt_h", noise(d.noise.rate_random_walk_deg_per_h_per_sqrt_h)}}},
-          {"failures", failures},
-          {"missing", missing},
-          {"ambiguous", d.ambiguous},
-          {"unexplained",
-           {{"p_value", d.unexplained.p_value},
-            {"depends_on", d.unexplained.depends_on},
-            {"suggestion", suggestion.empty() ? ordered_json() : ordered_json(suggestion)}}},
-          {"not_testable", not_testable},
-          {"bounds", bounds},
-          {"next_measurements", next},
-          {"ladder", ladder},
-          {"sentences", d.sentences},
-          {"next", next_step(d, options)}};
 }
 
 /// "first, second" under each of the headings, in the order in which they first come.
@@ -232,7 +141,12 @@ void print_text(const model::Diagnosis& d, const DiagnoseOptions& options, std::
   print_not_testable(d.not_testable);
   if (!d.next_measurements.empty()) fmt::print("\nWhat to measure next:\n");
   for (const model::NextMeasurement& n : d.next_measurements) {
-    fmt::print("  {} (for {})\n", n.action, few_of(n.tells_apart));
+    // What would show effects never seen names them itself.
+    if (n.separation > 0.0) {
+      fmt::print("  {} (for {})\n", n.action, few_of(n.tells_apart));
+    } else {
+      fmt::print("  {}\n", n.action);
+    }
   }
   if (!options.report.empty()) fmt::print("\nReport: {}\n", options.report);
   if (!options.output.empty()) fmt::print("\nModel written to {}\n", options.output);
@@ -320,7 +234,7 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
     if (Status written = put(*extended, *text); !written) return written.error();
   }
   if (options.json) {
-    print_json(to_json(*result, options));
+    print_json(diagnosis_json(*result, next_step(*result, options)));
   } else {
     print_text(*result, options, config::unit_of(model->observable));
   }

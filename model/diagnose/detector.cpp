@@ -169,14 +169,16 @@ Detector::Coefficients Detector::coefficients(Index candidate) const {
   const View& view = *views_[best_view(candidate)];
   const MatrixXd z =
       view.project(view.whitener->whiten(library_.columns.middleCols(b.first, b.width)));
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(z);
+  // Columns that the base makes dependent (cos and sin at two azimuths) share what they explain.
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
+  decomposition.setThreshold(kLeastLeft);
+  decomposition.compute(z);
   Coefficients out;
-  out.value = qr.solve(view.residual);
+  out.value = decomposition.solve(view.residual);
   const double left = (view.residual - z * out.value).squaredNorm();
   const double white2 = std::max(left / std::max(nu_ - static_cast<double>(b.width), 1.0),
                                  shapes_.anchor() * shapes_.anchor());
-  const MatrixXd inverse = (z.transpose() * z).completeOrthogonalDecomposition().pseudoInverse();
-  out.standard_error = (white2 * inverse.diagonal()).cwiseMax(0.0).cwiseSqrt();
+  out.standard_error = std::sqrt(white2) * decomposition.pseudoInverse().rowwise().norm();
   return out;
 }
 

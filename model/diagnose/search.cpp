@@ -101,6 +101,10 @@ class Search {
     result_.p_of_step.push_back(p);
     if (p > (found().empty() ? options_.first_level : options_.later_level)) {
       result_.bounds = stage.bounds();
+      std::erase_if(result_.bounds, [&](const Bound& bound) {
+        return std::any_of(found().begin(), found().end(),
+                           [&](const Found& f) { return f.effect == bound.effect; });
+      });
       return look_outside(stage);
     }
     if (absorb(stage, best, p)) return true;

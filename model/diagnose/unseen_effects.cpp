@@ -21,6 +21,7 @@ using Eigen::VectorXd;
 // An experiment that shows an effect this much less well than the best one still shows it.
 constexpr double kShowsAsWell = 0.2;
 constexpr int kGridPoints = 4;
+constexpr std::size_t kMostNamed = 4;  // in one line; the rest is counted
 
 /// The instrument that a column comes from, for people.
 std::string_view source_of(std::string_view column) {
@@ -147,9 +148,14 @@ std::vector<NextMeasurement> experiments_for_unseen(const NextMeasurementInput& 
       const double z = std::sqrt(shown(chosen, static_cast<Index>(i)));
       from.push_back(fmt::format("{} from {:.2g} {}", info.id, kSeparates / z, info.units.front()));
     }
-    next.action = fmt::format("{}: would show {} ({:.1f} h)",
+    std::string rest;
+    if (from.size() > kMostNamed) {
+      rest = fmt::format(" and {} more effects", from.size() - kMostNamed);
+      from.resize(kMostNamed);
+    }
+    next.action = fmt::format("{}: would show {}{} ({:.1f} h)",
                               experiments[static_cast<std::size_t>(chosen)].action,
-                              fmt::join(from, ", "), next.hours);
+                              fmt::join(from, ", "), rest, next.hours);
     out.push_back(std::move(next));
   }
   return out;
