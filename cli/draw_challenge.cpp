@@ -28,11 +28,11 @@ struct Kind {
   std::vector<Range> inner = {};
 };
 
-// Left out is what no ready procedure can tell. magnetic_cross_*: two axes are never energised
+// Left out is what these procedures cannot tell. magnetic_cross_*: two axes are never energised
 // together. magnetic_temperature_*: no sweep at a second temperature. magnetic_settling_*: one
 // window a level, in which it is a hysteresis of half a level's step to 4..14 % of its size; for
 // the same reason the widths of the hystereses begin where nothing else has their shape.
-// coil_heating: the coils null the ambient field too, and no column tells that current.
+// coil_heating: no field is held long enough.
 // earth_rate_projection: one rotation is a bias step. ambient_temperature: the room hardly moves.
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all = {

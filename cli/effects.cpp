@@ -88,9 +88,8 @@ Result<ExitStatus> run_effects(const EffectsOptions& options) {
       "\nh = field / 100 uT in the gyro's axes, t = temperature - reference temperature.\n"
       "play_w: backlash of half-width w; LPF(u; tau): first-order lag.\n"
       "Where they are missing, temperature_rate_c_per_h and temperature_acceleration_c_per_h2 are\n"
-      "derived from temperature_c and time_s, time_since_start_s from time_s, and coil_heat from "
-      "the\n"
-      "fields or from coil_current_a.\n"
+      "derived from temperature_c and time_s, time_since_start_s from time_s; coil_heat is\n"
+      "current_horizontal_a^2 + current_vertical_a^2, or else from coil_current_a or the fields.\n"
       "`fogbench effects EFFECT` tells what excites one and what it is confused with.\n");
   return ExitStatus::kDone;
 }

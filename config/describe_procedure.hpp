@@ -11,8 +11,8 @@ constexpr std::array<EnumName<HeatingMode>, 3> enum_names(HeatingMode /*mode*/) 
            {"boost", HeatingMode::kBoost},
            {"normal", HeatingMode::kNormal}}};
 }
-constexpr std::array<EnumName<Axis>, 3> enum_names(Axis /*axis*/) {
-  return {{{"x", Axis::kX}, {"y", Axis::kY}, {"z", Axis::kZ}}};
+constexpr std::array<EnumName<Axis>, 4> enum_names(Axis /*axis*/) {
+  return {{{"x", Axis::kX}, {"y", Axis::kY}, {"z", Axis::kZ}, {"north", Axis::kNorth}}};
 }
 
 /// A number, a list, or "$name" of a parameter. Bounds hold for what stands there literally; the
@@ -135,9 +135,11 @@ void describe(Visitor& v, CompensateField& s) {
 template <class Visitor>
 void describe(Visitor& v, Sweep& s) {
   v.tag("step", step_name(s));
-  v.required("axis", s.axis, "Axis of the gyro.");
+  v.required("axis", s.axis, "Axis of the gyro, or north at any azimuth.");
   v.required("levels_ut", s.levels_ut, "Fields above the compensated zero, in their order.",
              not_empty());
+  v.optional("other_pair_ut", s.other_pair_ut,
+             "Field that the other pair of coils holds meanwhile.");
   v.optional("duration_s", s.duration_s, "Length of the average at each level.", above(0));
   v.optional("settle_s", s.settle_s, "Wait before each average.", at_least(0));
   v.required("segment", s.segment, "Name of the sweep: coil_x; the branch is appended.");

@@ -20,7 +20,9 @@ using Number = std::variant<double, std::string>;
 using NumberList = std::variant<std::vector<double>, std::string>;
 
 enum class HeatingMode { kOff, kBoost, kNormal };
-enum class Axis { kX, kY, kZ };
+/// What a sweep drives: an axis of the gyro, or north, where the vertical pair points, whatever
+/// axes of the gyro lie along it.
+enum class Axis { kX, kY, kZ, kNorth };
 
 struct Step;
 
@@ -69,10 +71,12 @@ struct CompensateField {
 };
 
 /// Drives the field along one gyro axis through `levels_ut` from the compensated zero, one average
-/// each. Always indivisible: after any interruption it restarts from its first level.
+/// each. Always indivisible: after any interruption it restarts from its first level. Meanwhile the
+/// other pair of coils holds other_pair_ut above its own zero.
 struct Sweep {
   Axis axis = Axis::kX;
   NumberList levels_ut;
+  Number other_pair_ut = 0.0;
   Number duration_s = 180.0;
   Number settle_s = 5.0;
   std::string segment;  ///< "coil_x"; the branch is appended: /up, /down, /return

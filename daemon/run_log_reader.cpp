@@ -142,7 +142,13 @@ Result<StoredRun> RunLogReader::run(std::int64_t run) {
 
 Result<std::vector<StoredPoint>> RunLogReader::points(std::int64_t run) {
   std::string sql = "SELECT kind, test, block, segment, frames, frames_dropped, void_because";
-  for (const PointColumn& column : point_columns()) sql += fmt::format(", {}", column.name);
+  for (const PointColumn& column : point_columns()) {
+    // A store of an older version lacks the columns that came later.
+    const auto there = database_->integer(fmt::format(
+        "SELECT count(*) FROM pragma_table_info('points') WHERE name = '{}'", column.name));
+    if (!there) return there.error();
+    sql += *there != 0 ? fmt::format(", {}", column.name) : ", NULL";
+  }
   auto select = database_->prepare(sql + " FROM points WHERE run = ? ORDER BY point");
   if (!select) return select.error();
   select->bind(run);

@@ -41,6 +41,9 @@ constexpr PointColumn kPointColumns[] = {
     {"field_z_ut", "measured field along the gyro's z axis", &Point::field_z_ut},
     {"field_set_ut", "commanded level of a sweep; NULL outside one", &Point::field_set_ut},
     {"coil_current_a", "measured current of the energised pair", &Point::coil_current_a},
+    {"current_horizontal_a", "measured current of the horizontal pair",
+     &Point::current_horizontal_a},
+    {"current_vertical_a", "measured current of the vertical pair", &Point::current_vertical_a},
     {"azimuth_deg", "azimuth of the gyro", &Point::azimuth_deg},
 };
 
@@ -152,6 +155,25 @@ Status create_schema(Database& database) {
   return transaction->commit();
 }
 
+/// A store of an older version gets the columns of points that came later; its rows have no values
+/// there.
+Status add_new_columns(Database& database) {
+  for (const PointColumn& column : point_columns()) {
+    const auto there = database.integer(fmt::format(
+        "SELECT count(*) FROM pragma_table_info('points') WHERE name = '{}'", column.name));
+    if (!there) return there.error();
+    if (*there != 0) continue;
+    auto transaction = Transaction::begin(database);
+    if (!transaction) return transaction.error();
+    const Status added =
+        database.execute(fmt::format("ALTER TABLE points ADD COLUMN {} REAL", column.name));
+    if (!added) return added;
+    if (const Status ok = describe(database, "points", std::span(&column, 1)); !ok) return ok;
+    if (const Status ok = transaction->commit(); !ok) return ok;
+  }
+  return {};
+}
+
 Status check_schema(Database& database, const fs::path& path) {
   const auto application = database.integer("PRAGMA application_id");
   if (!application) return application.error();
@@ -236,6 +258,7 @@ Result<std::unique_ptr<Database>> open_store_for_writing(const fs::path& path) {
   auto database = Database::open(path, Database::Mode::kWrite);
   if (!database) return database;
   if (const Status ok = check_schema(**database, path); !ok) return ok.error();
+  if (const Status ok = add_new_columns(**database); !ok) return ok.error();
   if (const Status ok = (*database)->execute("PRAGMA synchronous = FULL"); !ok) return ok.error();
   return database;
 }

@@ -24,12 +24,23 @@ namespace {
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// The measurement table's columns of numbers: text in one of them is an error.
-constexpr std::array<std::string_view, 15> kMeasurementColumns = {
-    "rate_deg_per_h", "time_s",          "duration_s",
-    "temperature_c",  "ambient_c",       "rate_std_error_deg_per_h",
-    "heater_w",       "field_x_ut",      "field_y_ut",
-    "field_z_ut",     "azimuth_deg",     "temperature_rate_c_per_h",
-    "coil_current_a", "sigma_deg_per_h", "temperature_gradient_c"};
+constexpr std::array<std::string_view, 17> kMeasurementColumns = {"rate_deg_per_h",
+                                                                  "time_s",
+                                                                  "duration_s",
+                                                                  "temperature_c",
+                                                                  "ambient_c",
+                                                                  "rate_std_error_deg_per_h",
+                                                                  "heater_w",
+                                                                  "field_x_ut",
+                                                                  "field_y_ut",
+                                                                  "field_z_ut",
+                                                                  "azimuth_deg",
+                                                                  "temperature_rate_c_per_h",
+                                                                  "coil_current_a",
+                                                                  "sigma_deg_per_h",
+                                                                  "temperature_gradient_c",
+                                                                  "current_horizontal_a",
+                                                                  "current_vertical_a"};
 
 /// What was found, short and printable.
 std::string shown(std::string_view text) {

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<std::string_view, 3> kFields = {"field_x_ut", "field_y_ut", "field_z_ut"};
+constexpr std::array<std::string_view, 2> kCurrents = {"current_horizontal_a",
+                                                       "current_vertical_a"};
 /// Half of the window of a derived temperature rate. Long enough that 1 mK of sensor noise stays
 /// below 0.1 degC/h, short against the thermostat's ramps.
 constexpr double kRateHalfWindow_s = 30.0;
@@ -105,6 +107,11 @@ bool Signals::has_numbers(std::string_view name) const {
   return std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); });
 }
 
+bool Signals::has_both_currents() const {
+  return std::all_of(kCurrents.begin(), kCurrents.end(),
+                     [&](auto name) { return has_numbers(name); });
+}
+
 bool Signals::available(std::string_view name) const {
   if (has_numbers(name)) return true;
   if (name == "duration_s" || name == "run_index") return true;
@@ -116,7 +123,7 @@ bool Signals::available(std::string_view name) const {
     return has_numbers("time_s") && available("temperature_rate_c_per_h");
   }
   if (name == "coil_heat") {
-    return has_numbers("coil_current_a") ||
+    return has_both_currents() || has_numbers("coil_current_a") ||
            std::any_of(kFields.begin(), kFields.end(), [&](auto f) { return has_numbers(f); });
   }
   return false;
@@ -217,13 +224,15 @@ Signals::Values Signals::coil_heat() const {
       heat[row] += value * value;
     }
   };
-  bool any_field = false;
-  for (const std::string_view name : kFields) {
-    if (!has_numbers(name)) continue;
-    add_squares(name, kFieldUnitUt);
-    any_field = true;
+  if (has_both_currents()) {
+    for (const std::string_view name : kCurrents) add_squares(name, 1.0);
+  } else if (has_numbers("coil_current_a")) {
+    add_squares("coil_current_a", 1.0);
+  } else {
+    for (const std::string_view name : kFields) {
+      if (has_numbers(name)) add_squares(name, kFieldUnitUt);
+    }
   }
-  if (!any_field) add_squares("coil_current_a", 1.0);
   return heat;
 }
 

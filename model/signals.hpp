@@ -8,8 +8,9 @@
 //                             neighbouring rows), least squares
 //   temperature_acceleration_c_per_h2  the same slope of the temperature rate
 //   duration_s                0: a row is then a sample, not an average
-//   coil_heat                 sum of the squared fields present, (100 uT)^2; without any field,
-//                             coil_current_a squared, A^2
+//   coil_heat                 sum of the squared currents of both coil pairs, A^2; where these are
+//                             not both given, of coil_current_a; where that is not given either, of
+//                             the fields, (100 uT)^2, which miss what nulls the ambient field
 //   time_since_start_s        time_s minus that of the run's first row
 //   run_index                 0 for the first run by name ("2" before "10"), 1 for the next
 
@@ -71,6 +72,7 @@ class Signals {
   Values derive(std::string_view name) const;
   /// Least squares over the rows near each row, NaN where there are too few.
   Values slope_per_hour(std::string_view name) const;
+  bool has_both_currents() const;
   Values coil_heat() const;
   Values time_since_start() const;
   Values run_index() const;

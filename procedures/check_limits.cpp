@@ -90,13 +90,21 @@ class Checker {
     return {};
   }
   Status check(const SweepLevel& s) {
-    const double level = s.level.value;
+    const auto across = check_current(s.axis == Axis::kX ? Axis::kNorth : Axis::kX, s.other_pair);
+    if (!across) return across;
+    const auto along = check_current(s.axis, s.level);
+    if (!along) return along;
+    field_.take(s.level.value);
+    return check_zero(s.axis);
+  }
+  Status check_current(Axis axis, Microtesla field) {
+    const double level = field.value;
     if (std::abs(level) > bench_.limits.field_maximum.value) {
       return beyond(fmt::format("a level of {} uT, the bench allows {} uT either way", level,
                                 bench_.limits.field_maximum.value));
     }
-    const double current = worst_current(s.axis, s.level, bench_).value;
-    const double limit = current_limit(coil_of(s.axis, bench_)).value;
+    const double current = worst_current(axis, field, bench_).value;
+    const double limit = current_limit(coil_of(axis, bench_)).value;
     if (current > limit) {
       return beyond(fmt::format(
           "a level of {} uT and up to {} uT of ambient field need {:.2f} A, the coil and its "
@@ -107,12 +115,11 @@ class Checker {
       current_ = current;
       current_limit_ = limit;
     }
-    field_.take(level);
-    return check_zero(s.axis);
+    return {};
   }
   Status check_zero(Axis axis) const {
     const double needed = axis == Axis::kZ ? 90.0 : 0.0;
-    if (axis != Axis::kX && azimuth_.value != needed) {
+    if ((axis == Axis::kY || axis == Axis::kZ) && azimuth_.value != needed) {
       return wrong(fmt::format(
           "a sweep along O{} at azimuth {} deg, where no coil drives it; rotate to {} deg first",
           axis == Axis::kY ? 'Y' : 'Z', azimuth_.value, needed));

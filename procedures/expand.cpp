@@ -213,12 +213,13 @@ class Expander {
     }
     const Seconds duration{positive(s.duration_s, "duration_s")};
     const Seconds settle{not_negative(s.settle_s, "settle_s")};
+    const Microtesla other_pair{number(s.other_pair_ut, "other_pair_ut")};
     const auto branches = branch_names(*levels);
     const int block = place_->block != 0 ? place_->block : ++blocks_;
     for (std::size_t i = 0; i < levels->size(); ++i) {
       const double level = number((*levels)[i], "a level of levels_ut");
       const auto appended =
-          append(SweepLevel{s.axis, Microtesla{level}, duration, settle,
+          append(SweepLevel{s.axis, Microtesla{level}, other_pair, duration, settle,
                             s.segment.empty() ? branches[i] : s.segment + "/" + branches[i]},
                  path + "." + std::to_string(i + 1), block);
       if (!appended) return appended;

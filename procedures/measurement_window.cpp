@@ -118,6 +118,8 @@ Point MeasurementWindow::point(const PointLabels& labels) const {
   const bool vertical_pair = labels.driven ? *labels.driven != config::Axis::kX
                                            : std::abs(vertical) > std::abs(horizontal);
   p.coil_current_a = vertical_pair ? vertical : horizontal;
+  p.current_horizontal_a = horizontal;
+  p.current_vertical_a = vertical;
   p.azimuth_deg = azimuth_.value();
   return p;
 }

@@ -53,6 +53,7 @@ struct CompensateField {
 struct SweepLevel {
   Axis axis;
   Microtesla level;
+  Microtesla other_pair;  ///< held by the pair that `axis` does not drive
   Seconds duration;
   Seconds settle;
   std::string segment;

@@ -65,6 +65,8 @@ struct Point {
   double field_x_ut = 0.0, field_y_ut = 0.0, field_z_ut = 0.0;  ///< measured
   double field_set_ut = 0.0;    ///< commanded level; NaN outside a sweep
   double coil_current_a = 0.0;  ///< of the energised pair
+  double current_horizontal_a = 0.0,
+         current_vertical_a = 0.0;  ///< measured, with what nulls the ambient field
   double azimuth_deg = 0.0;
 };
 

@@ -82,7 +82,7 @@ Result<StepResult> RunSession::act(const CompensateField& step) {
 
 Result<StepResult> RunSession::act(const SweepLevel& step) {
   const double needed = step.axis == Axis::kZ ? 90.0 : 0.0;
-  if (step.axis != Axis::kX &&
+  if ((step.axis == Axis::kY || step.axis == Axis::kZ) &&
       config::angle_between(azimuth_, Degree{needed}) > kAzimuthTolerance) {
     return Error{ErrorCode::kDevice,
                  fmt::format("turntable: the gyro stands at azimuth {:.2f} deg, the sweep needs {}",
@@ -92,11 +92,11 @@ Result<StepResult> RunSession::act(const SweepLevel& step) {
     return Error{ErrorCode::kBadInput, "a sweep without a compensated zero at this azimuth"};
   }
   auto [horizontal, vertical] = *zero_;
-  if (step.axis == Axis::kX) {
-    horizontal = horizontal + Ampere{step.level.value / config_.coil_horizontal.field_ut_per_a};
-  } else {
-    vertical = vertical + Ampere{step.level.value / config_.coil_vertical.field_ut_per_a};
-  }
+  const bool up = step.axis == Axis::kX;
+  const Microtesla field_up = up ? step.level : step.other_pair;
+  const Microtesla field_north = up ? step.other_pair : step.level;
+  horizontal = horizontal + Ampere{field_up.value / config_.coil_horizontal.field_ut_per_a};
+  vertical = vertical + Ampere{field_north.value / config_.coil_vertical.field_ut_per_a};
   const auto set = set_currents(horizontal, vertical);
   if (!set) return set.error();
   const auto settled = tick_until(watch_.now() + drivers::from_seconds(step.settle.count()));

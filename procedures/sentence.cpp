@@ -55,8 +55,14 @@ std::string say(const CompensateField& s) {
                      s.tolerance.value);
 }
 std::string say(const SweepLevel& s) {
-  return fmt::format("set {} uT along O{}, settle for {}, average for {}{}", s.level.value,
-                     "XYZ"[static_cast<int>(s.axis)], duration_text(s.settle),
+  constexpr const char* kAlong[] = {"OX", "OY", "OZ", "north"};
+  std::string across;
+  if (s.other_pair.value != 0.0) {
+    across =
+        fmt::format(" and {} uT {}", s.other_pair.value, s.axis == Axis::kX ? "north" : "along OX");
+  }
+  return fmt::format("set {} uT along {}{}, settle for {}, average for {}{}", s.level.value,
+                     kAlong[static_cast<int>(s.axis)], across, duration_text(s.settle),
                      duration_text(s.duration), as(s.segment));
 }
 std::string say(const Rotate& s) {

@@ -158,6 +158,9 @@ Recorded BenchSchedule::recorded() const {
   column("coil_current_a", [](const Row& r) {
     return (r.field_ut[0] + r.field_ut[1] + r.field_ut[2]) / kCoils_ut_per_a;
   });
+  column("current_horizontal_a", [](const Row& r) { return r.field_ut[0] / kCoils_ut_per_a; });
+  column("current_vertical_a",
+         [](const Row& r) { return std::hypot(r.field_ut[1], r.field_ut[2]) / kCoils_ut_per_a; });
   column("azimuth_deg", [](const Row& r) { return r.azimuth_deg; });
 
   TextColumn segment;

@@ -62,9 +62,8 @@ BenchSchedule warm_at(const BenchState& state, char axis, double held_c) {
 class List {
  public:
   void add(std::string key, std::string action, const BenchSchedule& bench,
-           const Experiment::About& about, char axis = 0, bool by_hand = false) {
-    experiments.push_back(
-        {std::move(key), std::move(action), bench.recorded(), about, axis, by_hand});
+           const Experiment::About& about, char axis = 0) {
+    experiments.push_back({std::move(key), std::move(action), bench.recorded(), about, axis});
   }
   std::vector<Experiment> experiments;
 };
@@ -133,8 +132,8 @@ void add_field_experiments(List& list, const BenchState& state, char axis) {
     bench.sweep(axis, levels, kFieldAverage_s);
     list.add("second_temperature_" + letter,
              fmt::format("repeat the sweep of O{} at a second thermostat temperature, {:g} degC "
-                         "(set_temperature normal and settle_temperature before coil-sweep)",
-                         name, second_c),
+                         "(second-temperature with second_c {:g})",
+                         name, second_c, second_c),
              bench, kField, axis);
   }
 }
@@ -170,10 +169,10 @@ void add_cross_experiments(List& list, const BenchState& state) {
     }
     list.add(std::string("together_") + pair.axes,
              fmt::format("energise O{} and O{} together with 200 uT each at the four sign "
-                         "combinations, with zeros between ({}; by hand, a sweep drives one axis)",
+                         "combinations, with zeros between ({}; two-axes)",
                          static_cast<char>(pair.axes[0] - 'x' + 'X'),
                          static_cast<char>(pair.axes[1] - 'x' + 'X'), pair.how),
-             bench, kField, 0, true);
+             bench, kField);
   }
 }
 
@@ -283,9 +282,8 @@ void add_thermal_experiments(List& list, const BenchState& state) {
       bench.record(60.0, 10.0, "thermostat/off");
     }
     list.add("heater_off",
-             "switch the heater off for 60 s at a constant 45 degC, ten times (set_temperature "
-             "off, wait 60 s in windows of 10 s, set_temperature normal)",
-             bench, kThermal);
+             "switch the heater off for 60 s at a constant 45 degC, ten times (heater-off)", bench,
+             kThermal);
   }
 }
 

@@ -26,8 +26,6 @@ constexpr int kMostTimes = 6;
 constexpr double kMostPresentTimes = 100.0;
 // A second way is mentioned when it takes at most this much more time.
 constexpr double kNearlyAsQuick = 1.5;
-// What no procedure does takes an operator: it has to be this much quicker.
-constexpr double kByHand = 1.5;
 // Walks that a rival may be, in shares of the variance of the walk that scatters like the effect.
 constexpr std::array<double, 6> kWalks = {0.0, 0.03, 0.1, 0.3, 1.0, 3.0};
 constexpr int kGridPoints = 30;
@@ -261,7 +259,6 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
     double separation;
     int times;
     double hours() const { return times * experiment->record.hours; }
-    double effort() const { return hours() * (experiment->by_hand ? kByHand : 1.0); }
   };
   std::vector<Choice> choices;
   for (const Weighed& w : weighed_) {
@@ -271,11 +268,10 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
     choices.push_back({w.experiment, s * std::sqrt(times), times});
   }
   std::stable_sort(choices.begin(), choices.end(),
-                   [](const Choice& a, const Choice& b) { return a.effort() < b.effort(); });
+                   [](const Choice& a, const Choice& b) { return a.hours() < b.hours(); });
   std::vector<NextMeasurement> out;
   for (const Choice& c : choices) {
-    if (!out.empty() &&
-        (out.size() > 1 || c.effort() > kNearlyAsQuick * choices.front().effort())) {
+    if (!out.empty() && (out.size() > 1 || c.hours() > kNearlyAsQuick * choices.front().hours())) {
       break;
     }
     std::string text = c.experiment->action;

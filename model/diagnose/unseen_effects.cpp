@@ -25,7 +25,7 @@ constexpr std::size_t kMostNamed = 4;  // in one line; the rest is counted
 
 /// The instrument that a column comes from, for people.
 std::string_view source_of(std::string_view column) {
-  if (column.starts_with("field_") || column == "coil_current_a") {
+  if (column.starts_with("field_") || column.starts_with("current_")) {
     return "of the magnetometer or the coil supplies";
   }
   if (column == "azimuth_deg") return "of the turntable, or set by hand";

@@ -32,7 +32,8 @@ Eigen::VectorXd play(const Signals& signals, const Eigen::VectorXd& u, double wi
   return result;
 }
 
-Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau_s, Gap gap) {
+Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau_s, Gap gap,
+                    LagStart start) {
   const Signals::View time = signals.signal("time_s");
   const Signals::View duration = signals.signal("duration_s");
   Eigen::VectorXd result = Eigen::VectorXd::Constant(u.size(), kMissing);
@@ -44,7 +45,10 @@ Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau
       if (std::isnan(u[row]) || std::isnan(time[row])) continue;
       const double half = std::isnan(duration[row]) ? 0.0 : duration[row] / 2.0;
       double begin = time[row] - half;
-      if (!started) x = previous_u = u[row];
+      if (!started) {
+        previous_u = u[row];
+        x = start == LagStart::kEquilibrium ? u[row] : 0.0;
+      }
       if (started) {
         begin = std::max(begin, previous_end);  // windows that overlap share their time
         const double from = gap == Gap::kLinear ? previous_u : u[row];

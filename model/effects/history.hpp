@@ -19,10 +19,17 @@ enum class Gap {
   kStepped,  ///< takes the next value at once (fields: the supply is fast)
 };
 
-/// The first-order lag tau x' = u - x, x = u at each run's first row. u holds window means and is
+/// What x is when a run's first window begins.
+enum class LagStart {
+  kEquilibrium,  ///< u has been the same long before
+  kZero,
+};
+
+/// The first-order lag tau x' = u - x. u holds window means and is
 /// constant within a window. The result is x averaged over each window, exactly:
 ///   mean(x) = u - tau (x_end - x_begin) / duration,
 /// and x itself where the duration is 0. Rows where u or the time is missing are bridged and NaN.
-Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau_s, Gap gap);
+Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau_s, Gap gap,
+                    LagStart start = LagStart::kEquilibrium);
 
 }  // namespace fogbench::model::effects

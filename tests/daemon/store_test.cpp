@@ -99,6 +99,26 @@ TEST(Store, ReportsAFullDisk) {
   EXPECT_NE(full.error().message.find("the disk is full"), std::string::npos);
 }
 
+TEST(Store, OfAnOlderVersionGetsTheColumnsThatCameLater) {
+  const support::TemporaryFolder folder;
+  const auto path = folder / "store.db";
+  {
+    const auto store = open_store_for_writing(path);
+    ASSERT_TRUE(store);
+    ASSERT_TRUE((*store)->execute(
+        "ALTER TABLE points DROP COLUMN current_vertical_a;"
+        "DELETE FROM channels WHERE name = 'current_vertical_a' AND \"table\" = 'points'"));
+  }
+  const std::string there =
+      "SELECT count(*) FROM pragma_table_info('points') WHERE name = 'current_vertical_a'";
+  EXPECT_EQ(*(*open_store(path))->integer(there), 0);
+  const auto store = open_store_for_writing(path);
+  ASSERT_TRUE(store) << store.error().message;
+  EXPECT_EQ(*(*store)->integer(there), 1);
+  EXPECT_EQ(*(*store)->integer("SELECT count(*) FROM channels"),
+            static_cast<std::int64_t>(point_columns().size() + monitor_columns().size()));
+}
+
 TEST(Store, DescribesEveryColumnWithItsUnit) {
   const support::TemporaryFolder folder;
   const auto store = open_store_for_writing(folder / "store.db");

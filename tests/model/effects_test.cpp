@@ -140,7 +140,7 @@ TEST(Effects, SettlingIsAStepsExponentialAveragedOverTheWindows) {
   EXPECT_NEAR(found[3], -mean(40, 100) + mean(140, 200) + mean(240, 300), 1e-12);
 }
 
-TEST(Effects, CoilHeatingFollowsTheSquaredFieldWithALag) {
+TEST(Effects, CoilHeatingFollowsTheSquaredCurrentsWithALag) {
   Table table;
   table.set_column("time_s", {30, 90, 150});
   table.set_column("duration_s", {60, 60, 60});
@@ -156,6 +156,11 @@ TEST(Effects, CoilHeatingFollowsTheSquaredFieldWithALag) {
   current.set_column("duration_s", {60, 60, 60});
   current.set_column("coil_current_a", {0, 3, 3});
   EXPECT_THAT(regressor("coil_heating", {tau}, current), near({0, mean(0, 60), mean(60, 120)}));
+  // Both pairs, whatever the field: what nulls the ambient field heats too. Cold at the start.
+  table.set_column("current_horizontal_a", {1, 1, 1});
+  table.set_column("current_vertical_a", {std::sqrt(8.0), std::sqrt(8.0), std::sqrt(8.0)});
+  EXPECT_THAT(regressor("coil_heating", {tau}, table),
+              near({mean(0, 60), mean(60, 120), mean(120, 180)}));
 }
 
 TEST(Effects, LaggedRateFollowsARampOfTheRateExactly) {
