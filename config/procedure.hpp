@@ -76,10 +76,10 @@ struct CompensateField {
 struct Sweep {
   Axis axis = Axis::kX;
   NumberList levels_ut;
-  Number other_pair_ut = 0.0;
   Number duration_s = 180.0;
   Number settle_s = 5.0;
   std::string segment;  ///< "coil_x"; the branch is appended: /up, /down, /return
+  Number other_pair_ut = 0.0;
 };
 
 /// Turns the gyro to an azimuth: by motor, or by asking the operator.

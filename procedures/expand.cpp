@@ -218,10 +218,10 @@ class Expander {
     const int block = place_->block != 0 ? place_->block : ++blocks_;
     for (std::size_t i = 0; i < levels->size(); ++i) {
       const double level = number((*levels)[i], "a level of levels_ut");
-      const auto appended =
-          append(SweepLevel{s.axis, Microtesla{level}, other_pair, duration, settle,
-                            s.segment.empty() ? branches[i] : s.segment + "/" + branches[i]},
-                 path + "." + std::to_string(i + 1), block);
+      const auto appended = append(
+          SweepLevel{s.axis, Microtesla{level}, duration, settle,
+                     s.segment.empty() ? branches[i] : s.segment + "/" + branches[i], other_pair},
+          path + "." + std::to_string(i + 1), block);
       if (!appended) return appended;
     }
     return {};

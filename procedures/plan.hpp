@@ -53,10 +53,10 @@ struct CompensateField {
 struct SweepLevel {
   Axis axis;
   Microtesla level;
-  Microtesla other_pair;  ///< held by the pair that `axis` does not drive
   Seconds duration;
   Seconds settle;
   std::string segment;
+  Microtesla other_pair{0.0};  ///< held by the pair that `axis` does not drive
 };
 struct Rotate {
   Degree azimuth;

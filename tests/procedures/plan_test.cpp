@@ -94,6 +94,21 @@ TEST(Plan, RefusesASweepWithoutAZeroOrAwayFromItsCoil) {
   EXPECT_TRUE(plan_of({turned, zeroed, sweep(Axis::kZ, {0.0})}));
 }
 
+TEST(Plan, DrivesNorthAtAnyAzimuthAndHoldsTheOtherPairWithinItsLimit) {
+  const auto zeroed = step(config::CompensateField{0.2});
+  const auto turned = step(config::Rotate{45.0});
+  EXPECT_THAT(refusal({turned, zeroed, sweep(Axis::kY, {0.0})}, ErrorCode::kBadInput),
+              HasSubstr("OY at azimuth 45 deg"));
+  config::Sweep north{Axis::kNorth, std::vector<double>{100.0}, 180.0, 5.0, "coil", 200.0};
+  const auto plan = plan_of({turned, zeroed, step(north)});
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_THAT(plan->steps.back().says, HasSubstr("100 uT along north and 200 uT along OX"));
+  config::BenchConfig weak;
+  weak.coil_horizontal.current_limit = config::Ampere{2.0};
+  EXPECT_THAT(refusal({turned, zeroed, step(north)}, ErrorCode::kLimit, weak),
+              HasSubstr("a level of 200 uT"));
+}
+
 TEST(Plan, SaysWhichLimitsAreMetAndByHowMuch) {
   const auto plan = plan_of({heat(31.0), heat(55.0), step(config::CompensateField{0.2}),
                              sweep(Axis::kX, {0.0, 300.0, -300.0})});

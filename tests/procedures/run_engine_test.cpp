@@ -136,6 +136,23 @@ TEST(RunEngine, NullsTheFieldAtEachAzimuthAndSweepsFromThere) {
   EXPECT_NEAR(evidence["current_horizontal_a"].get<double>(), 48.0 / 89.9, 0.01);
 }
 
+TEST(RunEngine, EnergisesTwoAxesTogetherAndRecordsBothCurrents) {
+  Rig rig;
+  const config::Sweep both{Axis::kX, std::vector<double>{100.0}, 2.0, 0.0, "coil_x", -200.0};
+  const config::Sweep north{Axis::kNorth, std::vector<double>{200.0}, 2.0, 0.0, "coil_north"};
+  const auto summary =
+      rig.summary_of({compensate(), step(both), rotate(45.0), compensate(), step(north)});
+  ASSERT_EQ(rig.log.points.size(), 2U) << summary.end.reason;
+  const Point& p = rig.log.points[0];
+  EXPECT_NEAR(p.field_x_ut, 100.0, 1.0);
+  EXPECT_NEAR(p.field_y_ut, -200.0, 1.0);
+  EXPECT_DOUBLE_EQ(p.coil_current_a, p.current_horizontal_a);
+  EXPECT_NEAR(p.current_vertical_a, -2.2, 0.3);  // with what nulls the ambient field
+  const Point& q = rig.log.points[1];
+  EXPECT_NEAR(q.field_y_ut, 200.0 / std::sqrt(2.0), 2.0);
+  EXPECT_NEAR(q.field_z_ut, 200.0 / std::sqrt(2.0), 2.0);
+}
+
 TEST(RunEngine, TurnsTheGyroOnlyWithTheCoilsAtZero) {
   Rig rig;
   rig.plant.fails = [&](int, const std::string& name) {
