@@ -174,9 +174,11 @@ Signals::View Signals::whole(std::string_view name) const {
 }
 
 Signals::Values Signals::derive(std::string_view name) const {
-  if (name == "temperature_rate_c_per_h") return slope_per_hour("temperature_c");
+  if (name == "temperature_rate_c_per_h") return slope_per_hour("temperature_c", kRateHalfWindow_s);
   if (name == "temperature_acceleration_c_per_h2") {
-    return slope_per_hour("temperature_rate_c_per_h");
+    return has_numbers("duration_s") && has_numbers("temperature_c")
+               ? acceleration_of_windows()
+               : slope_per_hour("temperature_rate_c_per_h", kRateHalfWindow_s);
   }
   if (name == "coil_heat") return coil_heat();
   if (name == "time_since_start_s") return time_since_start();
@@ -184,7 +186,7 @@ Signals::Values Signals::derive(std::string_view name) const {
   return Values(table_.rows(), name == "duration_s" ? 0.0 : kMissing);
 }
 
-Signals::Values Signals::slope_per_hour(std::string_view name) const {
+Signals::Values Signals::slope_per_hour(std::string_view name, double half_window_s) const {
   const View time = whole("time_s");
   const View values = whole(name);
   const auto t = [&](std::size_t row) { return time[static_cast<Eigen::Index>(row)]; };
@@ -197,9 +199,9 @@ Signals::Values Signals::slope_per_hour(std::string_view name) const {
     for (std::size_t row = run.begin; row < run.end; ++row) {
       if (std::isnan(t(row))) continue;
       std::size_t from = first, to = std::max(last, std::min(row + 2, run.end));
-      while (from + 1 < row && !(t(from) >= t(row) - kRateHalfWindow_s)) ++from;
-      while (to < run.end && !(t(to) > t(row) + kRateHalfWindow_s)) ++to;
-      if (!(t(row) - origin <= 2.0 * kRateHalfWindow_s)) {
+      while (from + 1 < row && !(t(from) >= t(row) - half_window_s)) ++from;
+      while (to < run.end && !(t(to) > t(row) + half_window_s)) ++to;
+      if (!(t(row) - origin <= 2.0 * half_window_s)) {
         origin = t(row);
         line = SlidingLine(origin);
         for (std::size_t i = from; i < to; ++i) line.add(t(i), y(i), 1.0);
@@ -213,6 +215,32 @@ Signals::Values Signals::slope_per_hour(std::string_view name) const {
     }
   }
   return rate;
+}
+
+Signals::Values Signals::acceleration_of_windows() const {
+  constexpr double kSecondsPerHour = 3600.0;
+  constexpr double kMostGap = 0.1;  // of a window, between windows that follow each other
+  const View rate = whole("temperature_rate_c_per_h");
+  const View temperature = whole("temperature_c");
+  const View time = whole("time_s");
+  const View duration = whole("duration_s");
+  const auto adjoin = [&](Eigen::Index a) {
+    const double gap_s = time[a + 1] - time[a] - (duration[a] + duration[a + 1]) / 2.0;
+    return std::abs(gap_s) < kMostGap * std::min(duration[a], duration[a + 1]);
+  };
+  const auto rate_after = [&](Eigen::Index a) {
+    const double hours = (time[a + 1] - time[a]) / kSecondsPerHour;
+    return 2.0 * (temperature[a + 1] - temperature[a]) / hours - (rate[a] + rate[a + 1]) / 2.0;
+  };
+  Values result = slope_per_hour("temperature_rate_c_per_h", 0.0);
+  for (const RunRange& run : runs()) {
+    for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      if (!adjoin(row - 1) || !adjoin(row)) continue;
+      result[i] = (rate_after(row) - rate_after(row - 1)) * kSecondsPerHour / duration[row];
+    }
+  }
+  return result;
 }
 
 Signals::Values Signals::coil_heat() const {

@@ -6,7 +6,9 @@
 // Derived when the table lacks it:
 //   temperature_rate_c_per_h  slope of temperature_c over the rows within 30 s (at least the
 //                             neighbouring rows), least squares
-//   temperature_acceleration_c_per_h2  the same slope of the temperature rate
+//   temperature_acceleration_c_per_h2  the same slope of the temperature rate; of averages, which
+//   are
+//                             smooth already, over the neighbouring rows only
 //   duration_s                0: a row is then a sample, not an average
 //   coil_heat                 sum of the squared currents of both coil pairs, A^2; where these are
 //                             not both given, of coil_current_a; where that is not given either, of
@@ -71,8 +73,11 @@ class Signals {
   void put_in_order();
   Values derive(std::string_view name) const;
   /// Least squares over the rows near each row, NaN where there are too few.
-  Values slope_per_hour(std::string_view name) const;
+  Values slope_per_hour(std::string_view name, double half_window_s) const;
   bool has_both_currents() const;
+  /// Of averages: the rate at each end of a window is 2 x the slope between the two windows' means
+  /// less the mean of their own rates, exact for a cubic. Beside gaps, the slope of the rate.
+  Values acceleration_of_windows() const;
   Values coil_heat() const;
   Values time_since_start() const;
   Values run_index() const;

@@ -212,6 +212,15 @@ std::vector<double> averaged(const std::string& name, std::span<const double> va
   std::vector<double> column;
   column.reserve(bins.size());
   for (const Bin& bin : bins) {
+    // The ends of a bin are those of its first and last row.
+    if (name == "temperature_start_c") {
+      column.push_back(values[bin.begin]);
+      continue;
+    }
+    if (name == "temperature_end_c") {
+      column.push_back(values[bin.end - 1]);
+      continue;
+    }
     const auto count = static_cast<double>(bin.end - bin.begin);
     double sum = 0.0;
     for (std::size_t i = bin.begin; i < bin.end; ++i) {

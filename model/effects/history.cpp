@@ -32,8 +32,27 @@ Eigen::VectorXd play(const Signals& signals, const Eigen::VectorXd& u, double wi
   return result;
 }
 
+GapMeans temperature_rates_of_gaps(const Signals& signals) {
+  constexpr double kSecondsPerHour = 3600.0;
+  if (!signals.available("temperature_start_c") || !signals.available("temperature_end_c"))
+    return {};
+  const Signals::View start = signals.signal("temperature_start_c");
+  const Signals::View end = signals.signal("temperature_end_c");
+  const Signals::View time = signals.signal("time_s");
+  const Signals::View duration = signals.signal("duration_s");
+  GapMeans rates = GapMeans::Constant(time.size(), kMissing);
+  for (const Signals::RunRange& run : signals.runs()) {
+    for (auto row = static_cast<Eigen::Index>(run.begin) + 1;
+         row < static_cast<Eigen::Index>(run.end); ++row) {
+      const double gap_s = time[row] - time[row - 1] - (duration[row] + duration[row - 1]) / 2.0;
+      if (gap_s > 0.0) rates[row] = (start[row] - end[row - 1]) / gap_s * kSecondsPerHour;
+    }
+  }
+  return rates;
+}
+
 Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau_s, Gap gap,
-                    LagStart start) {
+                    LagStart start, const GapMeans& gap_means) {
   const Signals::View time = signals.signal("time_s");
   const Signals::View duration = signals.signal("duration_s");
   Eigen::VectorXd result = Eigen::VectorXd::Constant(u.size(), kMissing);
@@ -51,8 +70,9 @@ Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau
       }
       if (started) {
         begin = std::max(begin, previous_end);  // windows that overlap share their time
-        const double from = gap == Gap::kLinear ? previous_u : u[row];
-        x = advanced(x, from, u[row], begin - previous_end, tau_s);
+        const bool known = gap_means.size() > 0 && !std::isnan(gap_means[row]);
+        const double from = known ? gap_means[row] : gap == Gap::kLinear ? previous_u : u[row];
+        x = advanced(x, from, known ? from : u[row], begin - previous_end, tau_s);
       }
       const double end = std::max(time[row] + half, begin);
       const double x_end = advanced(x, u[row], u[row], end - begin, tau_s);

@@ -25,11 +25,20 @@ enum class LagStart {
   kZero,
 };
 
+/// In the gap before each row, what u is there on average; NaN where that is not known.
+using GapMeans = Eigen::VectorXd;
+
+/// The temperature rate in the gaps between windows, degC/h, from the temperatures at the ends of
+/// the windows beside them (temperature_start_c, temperature_end_c). Empty where the table has
+/// none.
+GapMeans temperature_rates_of_gaps(const Signals& signals);
+
 /// The first-order lag tau x' = u - x. u holds window means and is
-/// constant within a window. The result is x averaged over each window, exactly:
+/// constant within a window. The result is x averaged over each window, exactly
+/// (a gap whose mean is known is bridged with it):
 ///   mean(x) = u - tau (x_end - x_begin) / duration,
 /// and x itself where the duration is 0. Rows where u or the time is missing are bridged and NaN.
 Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau_s, Gap gap,
-                    LagStart start = LagStart::kEquilibrium);
+                    LagStart start = LagStart::kEquilibrium, const GapMeans& gap_means = {});
 
 }  // namespace fogbench::model::effects
