@@ -62,8 +62,9 @@ BenchSchedule warm_at(const BenchState& state, char axis, double held_c) {
 class List {
  public:
   void add(std::string key, std::string action, const BenchSchedule& bench,
-           const Experiment::About& about, char axis = 0) {
-    experiments.push_back({std::move(key), std::move(action), bench.recorded(), about, axis});
+           const Experiment::About& about, char axis = 0, bool by_hand = false) {
+    experiments.push_back(
+        {std::move(key), std::move(action), bench.recorded(), about, axis, by_hand});
   }
   std::vector<Experiment> experiments;
 };
@@ -169,10 +170,10 @@ void add_cross_experiments(List& list, const BenchState& state) {
     }
     list.add(std::string("together_") + pair.axes,
              fmt::format("energise O{} and O{} together with 200 uT each at the four sign "
-                         "combinations, with zeros between ({}; two-axes)",
+                         "combinations, with zeros between ({}; two-axes does it for all pairs)",
                          static_cast<char>(pair.axes[0] - 'x' + 'X'),
                          static_cast<char>(pair.axes[1] - 'x' + 'X'), pair.how),
-             bench, kField);
+             bench, kField, 0, true);
   }
 }
 

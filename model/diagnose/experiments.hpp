@@ -18,7 +18,8 @@ struct Experiment {
   std::string action;  ///< what to do, in the imperative, with the procedure that does it
   Recorded record;
   About about;
-  char axis = 0;  ///< of a field experiment along one axis; 0: any other
+  char axis = 0;         ///< of a field experiment along one axis; 0: any other
+  bool by_hand = false;  ///< no ready procedure does this and no more
 };
 
 /// Where the room and the thermostat stood in the measurement that is to be continued.

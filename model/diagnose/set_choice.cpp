@@ -26,6 +26,8 @@ constexpr int kMostTimes = 6;
 constexpr double kMostPresentTimes = 100.0;
 // A second way is mentioned when it takes at most this much more time.
 constexpr double kNearlyAsQuick = 1.5;
+// What no ready procedure does alone takes an operator, or longer: it has to be this much quicker.
+constexpr double kByHand = 1.5;
 // Walks that a rival may be, in shares of the variance of the walk that scatters like the effect.
 constexpr std::array<double, 6> kWalks = {0.0, 0.03, 0.1, 0.3, 1.0, 3.0};
 constexpr int kGridPoints = 30;
@@ -259,6 +261,7 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
     double separation;
     int times;
     double hours() const { return times * experiment->record.hours; }
+    double effort() const { return hours() * (experiment->by_hand ? kByHand : 1.0); }
   };
   std::vector<Choice> choices;
   for (const Weighed& w : weighed_) {
@@ -268,10 +271,11 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
     choices.push_back({w.experiment, s * std::sqrt(times), times});
   }
   std::stable_sort(choices.begin(), choices.end(),
-                   [](const Choice& a, const Choice& b) { return a.hours() < b.hours(); });
+                   [](const Choice& a, const Choice& b) { return a.effort() < b.effort(); });
   std::vector<NextMeasurement> out;
   for (const Choice& c : choices) {
-    if (!out.empty() && (out.size() > 1 || c.hours() > kNearlyAsQuick * choices.front().hours())) {
+    if (!out.empty() &&
+        (out.size() > 1 || c.effort() > kNearlyAsQuick * choices.front().effort())) {
       break;
     }
     std::string text = c.experiment->action;
