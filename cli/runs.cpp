@@ -15,7 +15,7 @@ struct RunsOptions {
   bool json = false;
 };
 
-nlohmann::ordered_json to_json(const daemon::StoredRun& run) {
+nlohmann::ordered_json row_of(const daemon::StoredRun& run) {
   return {{"run", run.run},
           {"started_at", run.header.started_at},
           {"procedure", run.header.procedure},
@@ -38,7 +38,7 @@ Result<ExitStatus> run_runs(const RunsOptions& options) {
   if (options.json) {
     nlohmann::ordered_json document{{"store", path->string()},
                                     {"runs", nlohmann::ordered_json::array()}};
-    for (const auto& run : *runs) document["runs"].push_back(to_json(run));
+    for (const auto& run : *runs) document["runs"].push_back(row_of(run));
     print_json(document);
     return ExitStatus::kDone;
   }

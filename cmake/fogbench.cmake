@@ -11,20 +11,17 @@ if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   target_compile_options(fogbench_warnings INTERFACE -Wno-maybe-uninitialized)
 endif()
 
-# fogbench_library(<folder> SOURCES a.cpp ... PUBLIC targets... PRIVATE targets...
-#                  [PRECOMPILE <header>...])
-# declares the static library of one room, fogbench::<folder>. PRECOMPILE: headers of other projects
-# that most of its sources include; the sources include what they need all the same.
+# fogbench_library(<folder> SOURCES a.cpp ... PUBLIC targets... PRIVATE targets...)
+# declares the static library of one room, fogbench::<folder>.
 function(fogbench_library folder)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(fogbench_${folder} STATIC ${ARG_SOURCES})
   add_library(fogbench::${folder} ALIAS fogbench_${folder})
   target_include_directories(fogbench_${folder} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(fogbench_${folder}
     PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:fogbench_warnings>)
-  if(FOGBENCH_PRECOMPILED_HEADERS AND ARG_PRECOMPILE)
-    target_precompile_headers(fogbench_${folder} PRIVATE ${ARG_PRECOMPILE})
-  endif()
+  set_target_properties(fogbench_${folder} PROPERTIES
+    UNITY_BUILD ${FOGBENCH_ALL_AT_ONCE} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
 # fogbench_test(<name> SOURCES a_test.cpp ... LINKS targets... LABEL unit|system|slow)
@@ -43,7 +40,7 @@ function(fogbench_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE
     ${ARG_LINKS} fogbench_test_support GTest::gtest_main GTest::gmock fogbench_warnings)
-  if(FOGBENCH_PRECOMPILED_HEADERS)
+  if(FOGBENCH_ALL_AT_ONCE)
     target_precompile_headers(${name} REUSE_FROM fogbench_test_support)
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES

@@ -31,6 +31,10 @@ struct Error {
   std::string message;
 };
 
+inline Error bad_input(std::string message) {
+  return Error{ErrorCode::kBadInput, std::move(message)};
+}
+
 template <class T>
 class [[nodiscard]] Result {
  public:

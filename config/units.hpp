@@ -9,6 +9,8 @@
 
 namespace fogbench::config {
 
+inline constexpr double kSecondsPerHour = 3600.0;
+
 /// A number with a unit: quantities of one unit add and compare, nothing else converts.
 template <class Unit>
 struct Quantity {

@@ -9,10 +9,11 @@
 #include <numbers>
 #include <numeric>
 
+#include "config/units.hpp"
+
 namespace fogbench::model {
 namespace {
 
-constexpr double kSecondsPerHour = 3600.0;
 constexpr int kCoefficients = 4;  // N^2, B^2, K^2, Q^2
 
 /// Equivalent degrees of freedom of the overlapping estimator for white rate noise,
@@ -25,7 +26,7 @@ double degrees_of_freedom(double samples, double m) {
 
 /// The formula's columns at tau: N^2, B^2, K^2, Q^2 each times its entry make sigma^2.
 Eigen::RowVector4d terms_at(double tau_s) {
-  const double tau = tau_s / kSecondsPerHour;
+  const double tau = tau_s / config::kSecondsPerHour;
   const double flicker = 2.0 * std::numbers::ln2 / std::numbers::pi;  // 0.664^2
   return {1.0 / tau, flicker, tau / 3.0, 3.0 / (tau * tau)};
 }
@@ -53,22 +54,20 @@ Subset non_negative_fit(const Eigen::MatrixXd& a, const Eigen::VectorXd& y) {
   return best;
 }
 
-Error bad(std::string message) {
-  return Error{ErrorCode::kBadInput, std::move(message)};
-}
-
 }  // namespace
 
 Result<std::vector<AllanPoint>> allan_deviation(std::span<const double> rate, double interval_s,
                                                 bool all_tau) {
   const std::size_t n = rate.size();
-  if (n < 3) return bad(fmt::format("{} samples: at least 3 were expected", n));
+  if (n < 3) return config::bad_input(fmt::format("{} samples: at least 3 were expected", n));
   if (!(interval_s > 0.0) || !std::isfinite(interval_s)) {
-    return bad(fmt::format("sampling interval {} s: a positive number was expected", interval_s));
+    return config::bad_input(
+        fmt::format("sampling interval {} s: a positive number was expected", interval_s));
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::isfinite(rate[i])) {
-      return bad(fmt::format("sample {} is {}: a number was expected", i + 1, rate[i]));
+      return config::bad_input(
+          fmt::format("sample {} is {}: a number was expected", i + 1, rate[i]));
     }
   }
   // Phase in intervals; the mean, which second differences do not see, is taken out for precision.
@@ -104,8 +103,8 @@ Result<AllanFit> fit_allan(std::span<const AllanPoint> curve) {
   }
   const auto rows = static_cast<Eigen::Index>(points.size());
   if (rows < kCoefficients) {
-    return bad(fmt::format("{} points of positive Allan deviation: at least {} were expected", rows,
-                           kCoefficients));
+    return config::bad_input(fmt::format(
+        "{} points of positive Allan deviation: at least {} were expected", rows, kCoefficients));
   }
   Eigen::MatrixXd a(rows, kCoefficients);
   Eigen::VectorXd variance(rows), relative(rows), log_tau(rows);
@@ -123,7 +122,8 @@ Result<AllanFit> fit_allan(std::span<const AllanPoint> curve) {
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
     const Eigen::VectorXd weight = expected.cwiseProduct(relative).cwiseInverse();
     fit = non_negative_fit(weight.asDiagonal() * a, weight.cwiseProduct(variance));
-    if (fit.columns.empty()) return bad("no non-negative N, B, K, Q fit this Allan deviation");
+    if (fit.columns.empty())
+      return config::bad_input("no non-negative N, B, K, Q fit this Allan deviation");
     expected = a(Eigen::all, fit.columns) * fit.values;
   }
   // Estimates an octave apart share half of their differences: correlation 2^-octaves.

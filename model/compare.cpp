@@ -17,8 +17,6 @@
 namespace fogbench::model {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
 /// Regions of the residual, as sums over their rows.
 struct Cells {
   std::vector<Partition> partitions;
@@ -114,7 +112,7 @@ Result<Comparison> compare(const Table& table, const config::ModelFile& model,
   auto noise = RegionNoise::make(table, options, out.fit, cells.partitions);
   if (!noise) return noise.error();
   out.noise_known = noise->known();
-  out.noise_floor = noise->known() && !noise->size_from_residual() ? noise->floor() : kUnknown;
+  out.noise_floor = noise->known() && !noise->size_from_residual() ? noise->floor() : kMissing;
 
   if (noise->known()) {
     Eigen::VectorXd residual(static_cast<Eigen::Index>(cells.regions.size()));

@@ -22,7 +22,7 @@ constexpr std::size_t kMostWindows = 10'000;
 constexpr std::size_t kEnoughRows = 20;
 
 double coverage_factor(double degrees_of_freedom) {
-  if (!(degrees_of_freedom > 0.0)) return kUnknown;
+  if (!(degrees_of_freedom > 0.0)) return kMissing;
   const boost::math::students_t distribution(degrees_of_freedom);
   return boost::math::quantile(distribution, (1.0 + kCoverage) / 2.0);
 }
@@ -61,7 +61,7 @@ Eigen::MatrixXd joint_covariance(const LinearFit& fit, Eigen::Index free, Eigen:
   std::vector<Eigen::Index> place = fit.kept;
   for (Eigen::Index i = 0; i < q; ++i) place.push_back(free + i);
   const std::vector<Eigen::Index> independent = independent_columns(fit.joint, kept + q);
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(free + q, free + q, kUnknown);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(free + q, free + q, kMissing);
   if (independent.empty()) return covariance;
   Reduction reduction(static_cast<Eigen::Index>(independent.size()));
   reduction.add(fit.joint(Eigen::all, independent));
@@ -81,7 +81,7 @@ Status fit_independent(FitWork& work) {
   const auto used = static_cast<double>(fit.kept.size()) + static_cast<double>(work.inner.size());
   const double dof = static_cast<double>(work.observations.taken().size()) - used;
   work.result.degrees_of_freedom = dof;
-  const double variance = dof > 0.0 ? fit.residual_sum_of_squares / dof : kUnknown;
+  const double variance = dof > 0.0 ? fit.residual_sum_of_squares / dof : kMissing;
   work.covariance = joint_covariance(fit, work.free(), work.inner.size(), variance);
   work.coverage = coverage_factor(dof);
   warn_of_dependence(work, fit);

@@ -48,7 +48,7 @@ void fill_residuals(FitWork& work) {
   result.residual_standard_deviation =
       result.degrees_of_freedom > 0.0
           ? std::sqrt(result.residual_sum_of_squares / result.degrees_of_freedom)
-          : kUnknown;
+          : kMissing;
 }
 
 void fill_independent_noise(FitWork& work) {
@@ -58,7 +58,7 @@ void fill_independent_noise(FitWork& work) {
       sigma.size() > 0 ? sigma : Eigen::VectorXd::Ones(result.residual.size());
   const double dof = result.degrees_of_freedom;
   const double factor =
-      dof > 0.0 ? std::sqrt(result.residual.cwiseQuotient(scale).squaredNorm() / dof) : kUnknown;
+      dof > 0.0 ? std::sqrt(result.residual.cwiseQuotient(scale).squaredNorm() / dof) : kMissing;
   result.standard_deviation = factor * scale;
   result.whitened = result.residual.cwiseQuotient(result.standard_deviation);
   result.noise.says = "independent, its size estimated from the residual";
@@ -101,7 +101,7 @@ void fill_estimates(FitWork& work) {
     }
     // A column that was left out has no covariance and a zero coefficient.
     const bool left_out = std::isnan(work.covariance(next, next)) && work.beta[next] == 0.0;
-    result.estimates.push_back({column.name, column.unit, left_out ? kUnknown : work.beta[next],
+    result.estimates.push_back({column.name, column.unit, left_out ? kMissing : work.beta[next],
                                 error_of(next), work.coverage, false});
     ++next;
   }

@@ -10,8 +10,6 @@
 
 namespace fogbench::model {
 
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
 /// One fit under way: the system, and what has been found so far.
 struct FitWork {
   const Table& table;

@@ -32,7 +32,6 @@ constexpr double kDistinguishable = 2.71;
 // Of the table of log P(nu/2, x): from e^-4 to e^4 times its median.
 constexpr double kTableSpan = 4.0;
 constexpr double kTableStep = 0.005;
-constexpr double kTwoSigma = 0.9544997361036416;  // probability within two standard deviations
 
 /// log of the regularised lower incomplete gamma function; the value itself may underflow.
 double log_gamma_p(double a, double x) {

@@ -22,6 +22,9 @@ namespace fogbench::model {
 
 struct WindowGeometry;
 
+/// Probability of a normal variable within two standard deviations.
+inline constexpr double kTwoSigma = 0.9544997361036416;
+
 /// The grid of noise shapes on given windows, in units of N. Whiteners are made once and kept where
 /// the rows are few, so that hundreds of candidate models on one table cost little each.
 class NoiseShapes {

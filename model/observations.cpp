@@ -8,10 +8,6 @@
 namespace fogbench::model {
 namespace {
 
-Error bad(std::string message) {
-  return {ErrorCode::kBadInput, std::move(message)};
-}
-
 Eigen::Index index_of(std::size_t i) {
   return static_cast<Eigen::Index>(i);
 }
@@ -29,7 +25,8 @@ Result<Observations> Observations::make(const Signals& signals, const Design& de
   if (!weight_by.empty()) needed.push_back(weight_by);
   std::vector<Signals::View> views;
   for (const std::string& name : needed) {
-    if (!signals.available(name) && !table.has(name)) return bad(table.why_missing(name));
+    if (!signals.available(name) && !table.has(name))
+      return config::bad_input(table.why_missing(name));
     views.push_back(signals.signal(name));
   }
   std::vector<double> sigma;
@@ -42,7 +39,7 @@ Result<Observations> Observations::make(const Signals& signals, const Design& de
     if (!weight_by.empty()) {
       sigma.push_back(views.back()[index_of(row)]);
       if (!(sigma.back() > 0.0)) {
-        return bad(
+        return config::bad_input(
             fmt::format("column {}: found {} in row {} of the data, expected a positive "
                         "standard deviation",
                         weight_by, sigma.back(), signals.table_row(row) + 1));
@@ -54,10 +51,12 @@ Result<Observations> Observations::make(const Signals& signals, const Design& de
   if (result.taken_.empty()) {
     for (std::size_t i = 0; i < needed.size(); ++i) {
       if (!signals.available(needed[i])) {
-        return bad(fmt::format("column {}: found no number in any row, expected some", needed[i]));
+        return config::bad_input(
+            fmt::format("column {}: found no number in any row, expected some", needed[i]));
       }
     }
-    return bad("found no row in which every column that the model needs has a number");
+    return config::bad_input(
+        "found no row in which every column that the model needs has a number");
   }
   if (!sigma.empty()) result.sigma_ = Eigen::VectorXd::Map(sigma.data(), index_of(sigma.size()));
   return result;
@@ -72,7 +71,7 @@ Eigen::VectorXd Observations::observed() const {
 
 Result<Windows> Observations::row_windows() const {
   for (const char* name : {"time_s", "duration_s"}) {
-    if (!signals_->table().has(name)) return bad(signals_->table().why_missing(name));
+    if (!signals_->table().has(name)) return config::bad_input(signals_->table().why_missing(name));
   }
   const Signals::View time = signals_->signal("time_s");
   const Signals::View duration = signals_->signal("duration_s");

@@ -21,8 +21,6 @@
 namespace fogbench::model {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 /// The measurement table's columns of numbers: text in one of them is an error.
 constexpr std::array<std::string_view, 17> kMeasurementColumns = {"rate_deg_per_h",
                                                                   "time_s",

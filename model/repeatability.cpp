@@ -11,6 +11,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/gls.hpp"
+
 namespace fogbench::model {
 namespace {
 
@@ -18,7 +20,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kSignificant = 0.05;
-constexpr double kTwoSigma = 0.9544997361036416;
 
 double chi_squared(const RunCoefficients& a, const RunCoefficients& b, double scale) {
   const VectorXd difference = b.values - scale * a.values;

@@ -13,7 +13,6 @@ namespace fogbench::model {
 namespace {
 
 constexpr std::size_t kMostPoints = 2000;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -25,7 +24,7 @@ std::vector<Layer> layers_of(const PlottedFits& fits) {
 
 RowValues by_table_row(const PlottedFits& fits, const FitResult& fit,
                        const Eigen::VectorXd& values) {
-  RowValues out(fits.table.rows(), kUnknown);
+  RowValues out(fits.table.rows(), kMissing);
   for (std::size_t i = 0; i < fit.rows.size(); ++i) {
     out[fit.rows[i]] = values[static_cast<Eigen::Index>(i)];
   }
@@ -34,7 +33,7 @@ RowValues by_table_row(const PlottedFits& fits, const FitResult& fit,
 
 RowValues plotted_values(const PlottedFits& fits, const Signals& signals,
                          const std::string& variable) {
-  RowValues out(fits.table.rows(), kUnknown);
+  RowValues out(fits.table.rows(), kMissing);
   const double scale = variable == "time_s" ? 3600.0 : 1.0;
   const Signals::View values = signals.signal(variable);
   for (std::size_t i = 0; i < signals.rows(); ++i) {

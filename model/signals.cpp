@@ -6,12 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "config/units.hpp"
 #include "model/effect.hpp"
 
 namespace fogbench::model {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<std::string_view, 3> kFields = {"field_x_ut", "field_y_ut", "field_z_ut"};
 constexpr std::array<std::string_view, 2> kCurrents = {"current_horizontal_a",
                                                        "current_vertical_a"};
@@ -218,7 +218,6 @@ Signals::Values Signals::slope_per_hour(std::string_view name, double half_windo
 }
 
 Signals::Values Signals::acceleration_of_windows() const {
-  constexpr double kSecondsPerHour = 3600.0;
   constexpr double kMostGap = 0.1;  // of a window, between windows that follow each other
   const View rate = whole("temperature_rate_c_per_h");
   const View temperature = whole("temperature_c");
@@ -229,7 +228,7 @@ Signals::Values Signals::acceleration_of_windows() const {
     return std::abs(gap_s) < kMostGap * std::min(duration[a], duration[a + 1]);
   };
   const auto rate_after = [&](Eigen::Index a) {
-    const double hours = (time[a + 1] - time[a]) / kSecondsPerHour;
+    const double hours = (time[a + 1] - time[a]) / config::kSecondsPerHour;
     return 2.0 * (temperature[a + 1] - temperature[a]) / hours - (rate[a] + rate[a + 1]) / 2.0;
   };
   Values result = slope_per_hour("temperature_rate_c_per_h", 0.0);
@@ -237,7 +236,7 @@ Signals::Values Signals::acceleration_of_windows() const {
     for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       if (!adjoin(row - 1) || !adjoin(row)) continue;
-      result[i] = (rate_after(row) - rate_after(row - 1)) * kSecondsPerHour / duration[row];
+      result[i] = (rate_after(row) - rate_after(row - 1)) * config::kSecondsPerHour / duration[row];
     }
   }
   return result;

@@ -10,45 +10,43 @@ namespace {
 
 constexpr double kStepTolerance = 0.01;
 
-Error bad(std::string message) {
-  return Error{ErrorCode::kBadInput, std::move(message)};
-}
-
 }  // namespace
 
 Result<StaticRecord> static_record(const Table& table, const std::string& column,
                                    double interval_s) {
-  if (!table.has(column)) return bad(fmt::format("the table has no column {}", column));
+  if (!table.has(column))
+    return config::bad_input(fmt::format("the table has no column {}", column));
   const TextColumn& run = table.run();
   const std::span<const double> rate = table.column(column);
   for (std::size_t i = 0; i < rate.size(); ++i) {
     if (!std::isfinite(rate[i])) {
-      return bad(
+      return config::bad_input(
           fmt::format("row {}: {} is missing; a record without gaps was expected", i + 1, column));
     }
     if (run.index[i] != run.index[0]) {
-      return bad(fmt::format("row {}: run {} after run {}; one run was expected", i + 1, run.at(i),
-                             run.at(0)));
+      return config::bad_input(fmt::format("row {}: run {} after run {}; one run was expected",
+                                           i + 1, run.at(i), run.at(0)));
     }
   }
   StaticRecord out{{rate.begin(), rate.end()}, interval_s};
   if (!table.has("time_s")) {
     if (!(interval_s > 0.0)) {
-      return bad("the table has no column time_s; the sampling interval was expected");
+      return config::bad_input(
+          "the table has no column time_s; the sampling interval was expected");
     }
     return out;
   }
   const std::span<const double> time = table.column("time_s");
   std::vector<double> steps;
   for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
-  if (steps.empty()) return bad("one row: a record was expected");
+  if (steps.empty()) return config::bad_input("one row: a record was expected");
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   out.interval_s = *middle;
   for (std::size_t i = 1; i < time.size(); ++i) {
     const double step = time[i] - time[i - 1];
     if (!(std::abs(step - out.interval_s) <= kStepTolerance * out.interval_s)) {
-      return bad(
+      return config::bad_input(
           fmt::format("row {}: {:.6g} s after the row before; a constant {:.6g} s was "
                       "expected",
                       i + 1, step, out.interval_s));

@@ -10,8 +10,6 @@
 namespace fogbench::model {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 TextColumn selected(const TextColumn& column, const std::vector<bool>& keep) {
   TextColumn result{column.values, {}};
   for (std::size_t row = 0; row < keep.size(); ++row) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -13,6 +14,9 @@
 #include "config/result.hpp"
 
 namespace fogbench::model {
+
+/// In tables and results: no value.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// Texts of one column, stored once each: a table has millions of rows and a few segments.
 struct TextColumn {

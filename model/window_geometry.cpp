@@ -7,10 +7,11 @@
 #include <limits>
 #include <numbers>
 
+#include "config/units.hpp"
+
 namespace fogbench::model {
 namespace {
 
-constexpr double kSecondsPerHour = 3600.0;
 // Time stamps are rounded: windows that touch may seem to overlap by this part of their length.
 constexpr double kOverlapTolerance = 0.01;
 // A ladder with a ratio of 4 follows the 1/f spectrum to better than 1 %.
@@ -23,10 +24,6 @@ double start_s(const Windows& w, Eigen::Index i) {
 }
 double end_s(const Windows& w, Eigen::Index i) {
   return w.centre_s[i] + 0.5 * w.duration_s[i];
-}
-
-Error bad(std::string message) {
-  return Error{ErrorCode::kBadInput, std::move(message)};
 }
 
 }  // namespace
@@ -47,15 +44,17 @@ Status check_windows(const Windows& w) {
   const Eigen::Index n = w.rows();
   if (w.duration_s.size() != n || w.run_begin.size() < 2 || w.run_begin.front() != 0 ||
       w.run_begin.back() != static_cast<std::size_t>(n)) {
-    return bad("windows: as many durations as rows and the runs' first rows were expected");
+    return config::bad_input(
+        "windows: as many durations as rows and the runs' first rows were expected");
   }
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!std::isfinite(w.centre_s[i])) {
-      return bad(fmt::format("row {}: time_s is {}, a number was expected", i + 1, w.centre_s[i]));
+      return config::bad_input(
+          fmt::format("row {}: time_s is {}, a number was expected", i + 1, w.centre_s[i]));
     }
     if (!(w.duration_s[i] > 0.0) || !std::isfinite(w.duration_s[i])) {
-      return bad(fmt::format("row {}: duration_s is {}, a positive number was expected", i + 1,
-                             w.duration_s[i]));
+      return config::bad_input(fmt::format(
+          "row {}: duration_s is {}, a positive number was expected", i + 1, w.duration_s[i]));
     }
   }
   for (std::size_t run = 0; run + 1 < w.run_begin.size(); ++run) {
@@ -64,12 +63,13 @@ Status check_windows(const Windows& w) {
     for (Eigen::Index i = first + 1; i < last; ++i) {
       const double overlap = end_s(w, i - 1) - start_s(w, i);
       if (w.centre_s[i] <= w.centre_s[i - 1]) {
-        return bad(fmt::format("row {}: time_s is {} after {}; rows of a run must be in time order",
-                               i + 1, w.centre_s[i], w.centre_s[i - 1]));
+        return config::bad_input(
+            fmt::format("row {}: time_s is {} after {}; rows of a run must be in time order", i + 1,
+                        w.centre_s[i], w.centre_s[i - 1]));
       }
       if (overlap > kOverlapTolerance * std::min(w.duration_s[i - 1], w.duration_s[i])) {
-        return bad(fmt::format("rows {} and {}: their averaging windows overlap by {:.3g} s", i,
-                               i + 1, overlap));
+        return config::bad_input(fmt::format(
+            "rows {} and {}: their averaging windows overlap by {:.3g} s", i, i + 1, overlap));
       }
     }
   }
@@ -97,7 +97,7 @@ FlickerLadder FlickerLadder::for_windows(const Windows& w) {
 
 Result<std::shared_ptr<const WindowGeometry>> WindowGeometry::make(const Windows& w) {
   if (auto status = check_windows(w); !status) return status.error();
-  if (w.rows() == 0) return bad("no rows to model the noise of");
+  if (w.rows() == 0) return config::bad_input("no rows to model the noise of");
   auto g = std::make_shared<WindowGeometry>();
   g->ladder = FlickerLadder::for_windows(w);
   g->run_begin = w.run_begin;
@@ -110,7 +110,7 @@ Result<std::shared_ptr<const WindowGeometry>> WindowGeometry::make(const Windows
   g->mean_total.resize(n);
   g->start_h.resize(n);
   g->step_h.resize(n);
-  g->duration_h = w.duration_s.array() / kSecondsPerHour;
+  g->duration_h = w.duration_s.array() / config::kSecondsPerHour;
   const Eigen::Map<const Eigen::ArrayXd> tau(g->ladder.tau_s.data(), terms);
   for (std::size_t run = 0; run + 1 < w.run_begin.size(); ++run) {
     const auto first = static_cast<Eigen::Index>(w.run_begin[run]);
@@ -127,7 +127,7 @@ Result<std::shared_ptr<const WindowGeometry>> WindowGeometry::make(const Windows
       g->mean_spread[i] = (psi - phi.square()).sum();
       g->mean_total[i] = psi.sum();
       g->start_h[i] = i == first ? 0.0 : g->start_h[i - 1] + g->step_h[i - 1];
-      g->step_h[i] = (d + gap) / kSecondsPerHour;
+      g->step_h[i] = (d + gap) / config::kSecondsPerHour;
     }
   }
   return std::shared_ptr<const WindowGeometry>(std::move(g));

@@ -13,10 +13,6 @@ using config::NumberList;
 using config::ParameterValue;
 using config::ProcedureConfig;
 
-Error bad(std::string message) {
-  return Error{ErrorCode::kBadInput, std::move(message)};
-}
-
 std::string location(const ProcedureConfig& procedure, const std::string& pointer) {
   const std::string file =
       procedure.file.empty() ? procedure.name : procedure.file.filename().string();
@@ -36,14 +32,15 @@ Result<Parameters> bind_parameters(const ProcedureConfig& procedure, const Param
   for (const auto& [name, value] : given) {
     const auto found = bound.find(name);
     if (found == bound.end()) {
-      return bad(fmt::format("{}: procedure {} has no parameter \"{}\" ({})", where, procedure.name,
-                             name, names_of(procedure.parameters)));
+      return config::bad_input(fmt::format("{}: procedure {} has no parameter \"{}\" ({})", where,
+                                           procedure.name, name, names_of(procedure.parameters)));
     }
     const bool wants_list = std::holds_alternative<std::vector<double>>(found->second);
     const bool is_list = std::holds_alternative<std::vector<double>>(value);
     if (is_list && !wants_list) {
-      return bad(fmt::format("{}: parameter \"{}\" of {} is a list, expected one number", where,
-                             name, procedure.name));
+      return config::bad_input(
+          fmt::format("{}: parameter \"{}\" of {} is a list, expected one number", where, name,
+                      procedure.name));
     }
     if (wants_list && !is_list) {
       found->second = std::vector<double>{std::get<double>(value)};
@@ -96,20 +93,23 @@ class Expander {
   double number(const Number& number, const char* what) {
     const auto value = resolve(number);
     if (!value) return fail(value.error());
-    if (!std::isfinite(*value)) return fail(bad(fmt::format("{}: {} is not finite", where_, what)));
+    if (!std::isfinite(*value))
+      return fail(config::bad_input(fmt::format("{}: {} is not finite", where_, what)));
     return *value;
   }
   double positive(const Number& n, const char* what) {
     const double value = number(n, what);
     if (!failure_ && value <= 0) {
-      return fail(bad(fmt::format("{}: {} is {}, expected more than 0", where_, what, value)));
+      return fail(config::bad_input(
+          fmt::format("{}: {} is {}, expected more than 0", where_, what, value)));
     }
     return value;
   }
   double not_negative(const Number& n, const char* what) {
     const double value = number(n, what);
     if (!failure_ && value < 0) {
-      return fail(bad(fmt::format("{}: {} is {}, expected 0 or more", where_, what, value)));
+      return fail(
+          config::bad_input(fmt::format("{}: {} is {}, expected 0 or more", where_, what, value)));
     }
     return value;
   }
@@ -122,7 +122,7 @@ class Expander {
     const std::string name = reference.starts_with('$') ? reference.substr(1) : reference;
     const auto found = place_->parameters.find(name);
     if (found == place_->parameters.end()) {
-      return bad(
+      return config::bad_input(
           fmt::format("{}: no parameter \"{}\" ({})", where_, name, names_of(place_->parameters)));
     }
     return found->second;
@@ -133,7 +133,8 @@ class Expander {
     const auto value = look_up(reference);
     if (!value) return value.error();
     if (const double* one = std::get_if<double>(&*value)) return *one;
-    return bad(fmt::format("{}: {} is a list, expected one number", where_, reference));
+    return config::bad_input(
+        fmt::format("{}: {} is a list, expected one number", where_, reference));
   }
   Result<std::vector<double>> resolve(const NumberList& list) const {
     if (const auto* values = std::get_if<std::vector<double>>(&list)) return *values;
@@ -141,11 +142,12 @@ class Expander {
     const auto value = look_up(reference);
     if (!value) return value.error();
     if (const auto* values = std::get_if<std::vector<double>>(&*value)) return *values;
-    return bad(fmt::format("{}: {} is one number, expected a list", where_, reference));
+    return config::bad_input(
+        fmt::format("{}: {} is one number, expected a list", where_, reference));
   }
 
   Error too_many() const {
-    return bad(
+    return config::bad_input(
         fmt::format("{}: the procedure expands to more than {} steps", where_, kMaximumSteps));
   }
 
@@ -179,8 +181,8 @@ class Expander {
                              s.segment,
                              Seconds{positive(s.window_s, "window_s")}};
     if (!failure_ && settle.timeout <= settle.dwell) {
-      return bad(fmt::format("{}: timeout_s is {}, expected more than dwell_s ({})", where_,
-                             settle.timeout.count(), settle.dwell.count()));
+      return config::bad_input(fmt::format("{}: timeout_s is {}, expected more than dwell_s ({})",
+                                           where_, settle.timeout.count(), settle.dwell.count()));
     }
     return append(std::move(settle), path);
   }
@@ -205,11 +207,12 @@ class Expander {
     const auto levels = resolve(s.levels_ut);
     if (!levels) return levels.error();
     if (levels->empty()) {
-      return bad(fmt::format("{}: levels_ut is empty, expected one level or more", where_));
+      return config::bad_input(
+          fmt::format("{}: levels_ut is empty, expected one level or more", where_));
     }
     if (s.segment.find('/') != std::string::npos) {
-      return bad(fmt::format("{}: segment is \"{}\", expected no '/': the branch is appended",
-                             where_, s.segment));
+      return config::bad_input(fmt::format(
+          "{}: segment is \"{}\", expected no '/': the branch is appended", where_, s.segment));
     }
     const Seconds duration{positive(s.duration_s, "duration_s")};
     const Seconds settle{not_negative(s.settle_s, "settle_s")};
@@ -252,13 +255,13 @@ class Expander {
   Status add(const config::Call& s, const std::string& path) {
     const std::string where = where_;
     const auto called = loader_(s.procedure, *place_->procedure);
-    if (!called) return bad(fmt::format("{}: {}", where, called.error().message));
+    if (!called) return config::bad_input(fmt::format("{}: {}", where, called.error().message));
     Place inner = *place_;
     inner.chain.push_back(called->name);
     for (const std::string& outer : place_->chain) {
       if (outer == called->name) {
-        return bad(fmt::format("{}: {} calls itself: {}", where, called->name,
-                               fmt::join(inner.chain, " -> ")));
+        return config::bad_input(fmt::format("{}: {} calls itself: {}", where, called->name,
+                                             fmt::join(inner.chain, " -> ")));
       }
     }
     Parameters given;

@@ -4,16 +4,17 @@
 #include <limits>
 #include <numbers>
 
+#include "config/units.hpp"
+
 namespace fogbench::simulator {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kSecondsPerHour = 3600.0;
 constexpr double kSecondsPerDay = 86400.0;
 
 double wait_for_next(double mean_per_h, NormalSource& random) {
   if (mean_per_h <= 0.0) return std::numeric_limits<double>::infinity();
-  return -std::log(random.uniform()) * kSecondsPerHour / mean_per_h;
+  return -std::log(random.uniform()) * config::kSecondsPerHour / mean_per_h;
 }
 
 }  // namespace

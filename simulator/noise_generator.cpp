@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "config/units.hpp"
+
 namespace fogbench::simulator {
 namespace {
-
-constexpr double kSecondsPerHour = 3600.0;
 
 /// 2 e - 3 + 4 exp(-e) - exp(-2 e), of order (2/3) e^3: by its power series where the closed form
 /// loses all digits.
@@ -46,7 +46,7 @@ std::vector<BinProcess> make_processes(const config::NoiseCoefficients& noise, d
     }
   }
   const double k = noise.rate_random_walk_deg_per_h_per_sqrt_h;
-  if (k > 0.0) processes.push_back(random_walk(k * k * interval_s / kSecondsPerHour));
+  if (k > 0.0) processes.push_back(random_walk(k * k * interval_s / config::kSecondsPerHour));
   return processes;
 }
 
@@ -73,7 +73,8 @@ NoiseGenerator::NoiseGenerator(const config::NoiseCoefficients& noise, double in
 
   Eigen::MatrixXd response = Eigen::MatrixXd::Zero(rows, states);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(rows, rows);
-  covariance.topLeftCorner(m, m).diagonal().setConstant(n * n * kSecondsPerHour / interval_s);
+  covariance.topLeftCorner(m, m).diagonal().setConstant(n * n * config::kSecondsPerHour /
+                                                        interval_s);
   for (Eigen::Index j = 0; j < states; ++j) {
     const BinProcess& p = processes_[static_cast<std::size_t>(j)];
     double decay_to_bin = 1.0;    // decay^i
@@ -127,7 +128,7 @@ void NoiseGenerator::draw_block() {
 
 AngleQuantiser::AngleQuantiser(double quantisation_deg, double interval_s)
     : increment_deg_(std::sqrt(12.0) * quantisation_deg),
-      interval_h_(interval_s / kSecondsPerHour) {}
+      interval_h_(interval_s / config::kSecondsPerHour) {}
 
 double AngleQuantiser::quantise(double rate_deg_per_h) {
   if (increment_deg_ <= 0.0) return rate_deg_per_h;

@@ -3,12 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "config/units.hpp"
+
 namespace fogbench::simulator {
-namespace {
-
-constexpr double kSecondsPerHour = 3600.0;
-
-}  // namespace
+namespace {}  // namespace
 
 ThermalPhysics::ThermalPhysics(const config::ThermalPlant& plant, double step_s)
     : plant_(plant),
@@ -46,8 +44,10 @@ void ThermalPhysics::advance(const HeaterPower& power) {
   for (std::size_t i = 0; i < 3; ++i) node_c_[i] += step_s_ * (first[i] + second[i]) / 2.0;
   ambient_c_ = next_ambient_c;
 
-  const double rate = slope_c_per_s(node_c_, ambient_c_, arriving.total_w())[1] * kSecondsPerHour;
-  carrier_acceleration_c_per_h2_ = (rate - carrier_rate_c_per_h_) / (step_s_ / kSecondsPerHour);
+  const double rate =
+      slope_c_per_s(node_c_, ambient_c_, arriving.total_w())[1] * config::kSecondsPerHour;
+  carrier_acceleration_c_per_h2_ =
+      (rate - carrier_rate_c_per_h_) / (step_s_ / config::kSecondsPerHour);
   carrier_rate_c_per_h_ = rate;
   gradient_c_ = plant_.gradient_c_per_w * arriving.boost_w;
 }

@@ -78,14 +78,13 @@ Windows windows_at(const Windows& all, const std::vector<Index>& rows) {
 
 double heldout_rms(const Table& table, const Windows& windows, const config::ModelFile& fitted,
                    const NoiseCoefficients& noise) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const Signals signals(table, fitted.reference_temperature_c);
   const auto system = system_of(signals, fitted);
-  if (!system) return kUnknown;
+  if (!system) return kMissing;
   const auto n = system->complete.size();
   const auto p = static_cast<std::size_t>(system->x.cols());
   const std::size_t folds = std::min(kFolds, n);
-  if (n < p + 2 || folds < 2) return kUnknown;
+  if (n < p + 2 || folds < 2) return kMissing;
 
   const Index rank =
       p > 0 ? Eigen::ColPivHouseholderQR<MatrixXd>(system->x(system->complete, Eigen::all)).rank()
@@ -116,7 +115,7 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
     squares += (system->y(left) - system->x(left, Eigen::all) * beta).squaredNorm();
     count += left.size();
   }
-  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : kUnknown;
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : kMissing;
 }
 
 }  // namespace fogbench::model

@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "config/units.hpp"
+
 namespace fogbench::model {
 namespace {
 
@@ -14,7 +16,6 @@ using Eigen::VectorXd;
 
 constexpr const char* kRate = "temperature_rate_c_per_h";
 constexpr const char* kAcceleration = "temperature_acceleration_c_per_h2";
-constexpr double kSecondsPerHour = 3600.0;
 
 /// Elementary loops of a relaxing one, in widths, up to where exp(-width) no longer counts.
 constexpr int kLoops = 12;
@@ -82,15 +83,16 @@ std::vector<double> rate_between_ends(const Signals& signals) {
   const auto duration = signals.signal("duration_s");
   std::vector<double> out(rate.begin(), rate.end());
   const auto boundary = [&](Index a, Index b) {
-    const double half_a = 0.5 * duration[a] / kSecondsPerHour;
-    const double half_b = 0.5 * duration[b] / kSecondsPerHour;
+    const double half_a = 0.5 * duration[a] / config::kSecondsPerHour;
+    const double half_b = 0.5 * duration[b] / config::kSecondsPerHour;
     return 0.5 * (temperature[a] + rate[a] * half_a + temperature[b] - rate[b] * half_b);
   };
   for (const Signals::RunRange& run : signals.runs()) {
     for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
       const auto row = static_cast<Index>(i);
       if (!adjoin(signals, row - 1, row) || !adjoin(signals, row, row + 1)) continue;
-      out[i] = (boundary(row, row + 1) - boundary(row - 1, row)) * kSecondsPerHour / duration[row];
+      out[i] = (boundary(row, row + 1) - boundary(row - 1, row)) * config::kSecondsPerHour /
+               duration[row];
     }
   }
   return out;
@@ -105,14 +107,14 @@ std::vector<double> acceleration_between_ends(const Signals& signals) {
   const auto stated = signals.signal(kAcceleration);
   std::vector<double> out(stated.begin(), stated.end());
   const auto boundary = [&](Index a, Index b) {
-    const double hours = (time[b] - time[a]) / kSecondsPerHour;
+    const double hours = (time[b] - time[a]) / config::kSecondsPerHour;
     return 2.0 * (temperature[b] - temperature[a]) / hours - 0.5 * (rate[a] + rate[b]);
   };
   for (const Signals::RunRange& run : signals.runs()) {
     for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
       const auto row = static_cast<Index>(i);
       if (!adjoin(signals, row - 1, row) || !adjoin(signals, row, row + 1)) continue;
-      const double hours = 0.5 * (time[row + 1] - time[row - 1]) / kSecondsPerHour;
+      const double hours = 0.5 * (time[row + 1] - time[row - 1]) / config::kSecondsPerHour;
       out[i] = (boundary(row, row + 1) - boundary(row - 1, row)) / hours;
     }
   }

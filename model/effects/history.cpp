@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "config/units.hpp"
+
 namespace fogbench::model::effects {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// x after `span_s` of an input that moves evenly from `from` to `to`.
 double advanced(double x, double from, double to, double span_s, double tau_s) {
@@ -33,7 +33,6 @@ Eigen::VectorXd play(const Signals& signals, const Eigen::VectorXd& u, double wi
 }
 
 GapMeans temperature_rates_of_gaps(const Signals& signals) {
-  constexpr double kSecondsPerHour = 3600.0;
   if (!signals.available("temperature_start_c") || !signals.available("temperature_end_c"))
     return {};
   const Signals::View start = signals.signal("temperature_start_c");
@@ -45,7 +44,7 @@ GapMeans temperature_rates_of_gaps(const Signals& signals) {
     for (auto row = static_cast<Eigen::Index>(run.begin) + 1;
          row < static_cast<Eigen::Index>(run.end); ++row) {
       const double gap_s = time[row] - time[row - 1] - (duration[row] + duration[row - 1]) / 2.0;
-      if (gap_s > 0.0) rates[row] = (start[row] - end[row - 1]) / gap_s * kSecondsPerHour;
+      if (gap_s > 0.0) rates[row] = (start[row] - end[row - 1]) / gap_s * config::kSecondsPerHour;
     }
   }
   return rates;

@@ -10,8 +10,6 @@
 namespace fogbench::tests {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 using Recipe = std::function<Series(const World&, const ForeignEffect&)>;
 
 Series mapped(std::size_t n, const std::function<double(std::size_t)>& f) {
@@ -127,7 +125,7 @@ void add_thermal(std::map<std::string, Recipe>& all) {
     return sum(sum(play(t, 0.3 * e.inner), 1.0, play(t, e.inner)), 1.0, play(t, 2.5 * e.inner));
   };
   all["temperature_ripple"] = instant([](const World& w, const ForeignEffect& e, std::size_t i) {
-    return std::sin(2.0 * kPi * excess(w, i) / e.inner + e.phase);
+    return std::sin(2.0 * std::numbers::pi * excess(w, i) / e.inner + e.phase);
   });
   all["heater_power"] = [](const World& w, const ForeignEffect&) { return w.heater_w; };
   all["ambient_temperature"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
@@ -149,7 +147,7 @@ void add_timed(std::map<std::string, Recipe>& all) {
     return std::exp(-t / e.inner) + (other(e) ? 0.5 * std::exp(-t / (4.0 * e.inner)) : 0.0);
   });
   all["earth_rate_projection"] = instant([](const World& w, const ForeignEffect& e, std::size_t i) {
-    return std::cos(w.azimuth_deg[i] * kPi / 180.0 - e.phase);
+    return std::cos(w.azimuth_deg[i] * std::numbers::pi / 180.0 - e.phase);
   });
   all["coil_heating"] = [](const World& w, const ForeignEffect& e) {
     if (other(e)) return lagged(lagged(coil_power(w), e.inner / 2.0), e.inner / 2.0);
@@ -208,7 +206,7 @@ void add_outside(std::map<std::string, Recipe>& all) {
     });
   };
   all["outside_sine_field_z"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
-    return std::sin(2.0 * kPi * field(w, 2, i) / 1.9);
+    return std::sin(2.0 * std::numbers::pi * field(w, 2, i) / 1.9);
   });
   all["outside_pulse"] = instant([](const World& w, const ForeignEffect& e, std::size_t i) {
     const double lasts = 0.2 * World::time_s(w.size());
@@ -231,7 +229,7 @@ void add_outside(std::map<std::string, Recipe>& all) {
       });
   all["outside_bias_per_orientation"] =
       instant([](const World& w, const ForeignEffect&, std::size_t i) {
-        return std::cos(3.0 * w.azimuth_deg[i] * kPi / 180.0);
+        return std::cos(3.0 * w.azimuth_deg[i] * std::numbers::pi / 180.0);
       });
 }
 
@@ -249,7 +247,7 @@ void add_unusual(std::map<std::string, Recipe>& all) {
         return std::exp(field(w, 2, i) / 1.2);
       });
   all["outside_sine_in_time"] = instant([](const World&, const ForeignEffect& e, std::size_t i) {
-    return std::sin(2.0 * kPi * World::time_s(i) / e.inner + e.phase);
+    return std::sin(2.0 * std::numbers::pi * World::time_s(i) / e.inner + e.phase);
   });
   all["outside_creep"] = instant([](const World&, const ForeignEffect&, std::size_t i) {
     return std::log1p(World::time_s(i) / 120.0);
@@ -342,7 +340,7 @@ ForeignEffect drawn_effect(const std::string& id, Shape shape, const World& worl
     effect.inner =
         instant_in_time ? least + share * (most - least) : least * std::pow(most / least, share);
   }
-  effect.phase = 2.0 * kPi * uniform(engine);
+  effect.phase = 2.0 * std::numbers::pi * uniform(engine);
   effect.amplitude = uniform(engine) < 0.5 ? -1.0 : 1.0;
   return effect;
 }

@@ -12,7 +12,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kHour = 3600.0;
 
 // Flicker noise as Ornstein-Uhlenbeck processes whose times grow by this ratio.
@@ -116,7 +115,7 @@ double walk_covariance(const World::Window& a, const World::Window& b) {
 }
 
 double sine_covariance(const World::Window& a, const World::Window& b, double period_s) {
-  const double omega = 2.0 * kPi / period_s;
+  const double omega = 2.0 * std::numbers::pi / period_s;
   const auto share = [&](const World::Window& w) {
     const double x = omega * w.seconds() / 2.0;
     return std::sin(x) / x;
@@ -160,7 +159,7 @@ std::vector<std::string> noises_outside_the_family() {
 
 double white_deviation(const ForeignNoise& noise, const World& world, const World::Window& window) {
   const double middle = 0.5 * static_cast<double>(window.begin + window.end);
-  const double turn = 2.0 * kPi * middle / static_cast<double>(world.size());
+  const double turn = 2.0 * std::numbers::pi * middle / static_cast<double>(world.size());
   return noise.white / std::sqrt(window.seconds() / kHour) *
          (1.0 + noise.white_swing * std::sin(turn));
 }
@@ -170,7 +169,7 @@ VectorXd draw_noise(const ForeignNoise& noise, const World& world, std::mt19937_
   std::uniform_real_distribution<> uniform;
   VectorXd path = VectorXd::Zero(static_cast<Index>(world.size()));
   if (noise.flicker > 0.0) {
-    const double deviation = noise.flicker * std::sqrt(std::log(kRatio) / kPi);
+    const double deviation = noise.flicker * std::sqrt(std::log(kRatio) / std::numbers::pi);
     for (double tau = kShortest_s; tau < kLongest_s; tau *= kRatio) {
       add_markov(deviation, tau, path, engine);
     }
@@ -179,7 +178,7 @@ VectorXd draw_noise(const ForeignNoise& noise, const World& world, std::mt19937_
   if (noise.fractional > 0.0) add_fractional(noise.fractional, path, engine);
   if (noise.markov > 0.0) add_markov(noise.markov, noise.markov_tau_s, path, engine);
 
-  const double phase = 2.0 * kPi * uniform(engine);
+  const double phase = 2.0 * std::numbers::pi * uniform(engine);
   std::map<std::size_t, double> rounding;  // of the angle at each instant that bounds a window
   const auto rounded = [&](std::size_t step) {
     return rounding.try_emplace(step, (uniform(engine) - 0.5) * noise.quantum_deg).first->second;
@@ -196,7 +195,7 @@ VectorXd draw_noise(const ForeignNoise& noise, const World& world, std::mt19937_
     out[row] = path.segment(static_cast<Index>(w.begin), steps).mean() +
                white_deviation(noise, world, w) * unit;
     if (noise.interference > 0.0) {
-      const double omega = 2.0 * kPi / noise.interference_period_s;
+      const double omega = 2.0 * std::numbers::pi / noise.interference_period_s;
       out[row] += noise.interference *
                   (std::cos(omega * begin_s(w) + phase) - std::cos(omega * end_s(w) + phase)) /
                   (omega * w.seconds());
@@ -224,7 +223,8 @@ MatrixXd noise_covariance(const ForeignNoise& noise, const World& world) {
       const World::Window& b = world.windows[static_cast<std::size_t>(j)];
       double v = 0.0;
       for (double tau = kShortest_s; noise.flicker > 0.0 && tau < kLongest_s; tau *= kRatio) {
-        v += noise.flicker * noise.flicker * std::log(kRatio) / kPi * markov_covariance(a, b, tau);
+        v += noise.flicker * noise.flicker * std::log(kRatio) / std::numbers::pi *
+             markov_covariance(a, b, tau);
       }
       v += noise.walk * noise.walk * walk_covariance(a, b);
       v += noise.markov * noise.markov * markov_covariance(a, b, noise.markov_tau_s);

@@ -8,8 +8,6 @@
 namespace fogbench::tests {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 using Field = std::array<double, 3>;
 
 /// Grows a run step by step.
@@ -23,7 +21,8 @@ class Schedule {
     rate_ += (wanted - rate_) * (1.0 - std::exp(-kGridStep / 60.0));
     temperature_ += rate_ * kGridStep / 3600.0;
     const double ambient =
-        kLaboratory + 0.5 * std::sin(2.0 * kPi * World::time_s(world_.size()) / 9000.0 + 1.0);
+        kLaboratory +
+        0.5 * std::sin(2.0 * std::numbers::pi * World::time_s(world_.size()) / 9000.0 + 1.0);
     const double heater = std::clamp(0.22 * (temperature_ - ambient) + 0.22 * rate_, 0.0, 12.0);
     gradient_ += (0.06 * heater + 0.01 * rate_ - gradient_) * (1.0 - std::exp(-kGridStep / 240.0));
     world_.temperature_c.push_back(temperature_);
