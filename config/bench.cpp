@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "config/connection.hpp"
 #include "config/describe_bench.hpp"
 
 namespace fogbench::config {
@@ -19,6 +20,15 @@ bool is_date(const std::string& text) {
       std::chrono::month{static_cast<unsigned>(std::stoi(text.substr(5, 2)))},
       std::chrono::day{static_cast<unsigned>(std::stoi(text.substr(8, 2)))}};
   return date.ok();
+}
+
+/// Every kind of instrument has its own ways to be reached; all can be simulated.
+bool check_scheme(const Place& at, const InstrumentConfig& i,
+                  std::initializer_list<std::string_view> schemes, std::string_view expected) {
+  return i.connection == "simulated" ||
+         std::any_of(schemes.begin(), schemes.end(),
+                     [&](std::string_view scheme) { return i.connection.starts_with(scheme); }) ||
+         (at / "connection").wrong(expected);
 }
 
 }  // namespace
@@ -38,16 +48,8 @@ std::optional<DeviceFile> read_named_device(const Place& at) {
 }
 
 bool check(const Place& at, const InstrumentConfig& i) {
-  constexpr std::array<std::string_view, 5> kSchemes = {"tcp:", "rtu:", "usb:", "hid:", "tty:"};
-  const bool known =
-      i.connection == "simulated" ||
-      std::any_of(kSchemes.begin(), kSchemes.end(), [&](std::string_view scheme) {
-        return i.connection.starts_with(scheme) && i.connection.size() > scheme.size();
-      });
-  if (!known) {
-    return (at / "connection")
-        .wrong("\"simulated\", or an address that starts with tcp:, rtu:, usb:, hid: or tty:");
-  }
+  const auto connection = parse_connection(i.connection);
+  if (!connection) return (at / "connection").fail(connection.error().message);
   for (const auto& [key, date] : {std::pair{"calibrated_on", &i.calibrated_on},
                                   std::pair{"calibration_due", &i.calibration_due}}) {
     if (!date->empty() && !is_date(*date)) return (at / key).wrong("a date, YYYY-MM-DD");
@@ -56,15 +58,20 @@ bool check(const Place& at, const InstrumentConfig& i) {
 }
 
 bool check(const Place& at, const ThermostatConfig& t) {
-  return check(at, static_cast<const InstrumentConfig&>(t));
+  return check(at, static_cast<const InstrumentConfig&>(t)) &&
+         check_scheme(at, t, {"tcp:", "rtu:"}, "a thermostat on tcp: or rtu:");
 }
 
 bool check(const Place& at, const MagnetometerConfig& m) {
-  return check(at, static_cast<const InstrumentConfig&>(m));
+  return check(at, static_cast<const InstrumentConfig&>(m)) &&
+         check_scheme(at, m, {"hid:"}, "a magnetometer on hid:");
 }
 
 bool check(const Place& at, const CoilConfig& c) {
-  if (!check(at, static_cast<const InstrumentConfig&>(c))) return false;
+  if (!check(at, static_cast<const InstrumentConfig&>(c)) ||
+      !check_scheme(at, c, {"usb:", "tty:"}, "a coil supply on usb: or tty:")) {
+    return false;
+  }
   if (c.device.unit != "A") {
     return (at / "device")
         .fail(fmt::format("sets {}; expected a supply that sets A", c.device.unit));
@@ -80,7 +87,10 @@ bool check(const Place& at, const CoilConfig& c) {
 }
 
 bool check(const Place& at, const TurntableConfig& t) {
-  if (!check(at, static_cast<const InstrumentConfig&>(t))) return false;
+  if (!check(at, static_cast<const InstrumentConfig&>(t)) ||
+      !check_scheme(at, t, {"usb:", "tty:"}, "a turntable on usb: or tty:")) {
+    return false;
+  }
   if (t.motorised != t.device.has_value()) {
     return (at / "device")
         .wrong(t.motorised ? "a device file: the turntable is motorised"
@@ -94,7 +104,10 @@ bool check(const Place& at, const TurntableConfig& t) {
 }
 
 bool check(const Place& at, const GyroConfig& g) {
-  if (!check(at, static_cast<const InstrumentConfig&>(g))) return false;
+  if (!check(at, static_cast<const InstrumentConfig&>(g)) ||
+      !check_scheme(at, g, {"tty:"}, "a gyro on tty:")) {
+    return false;
+  }
   if (!check_frame_rate(at, g.device)) return false;
   return g.max_gap.count() * g.device.frame_rate_hz >= 1.0 ||
          (at / "max_gap_s")

@@ -14,9 +14,7 @@
 
 namespace fogbench::config {
 
-/// Where an instrument is connected. `connection` is the transport's own address
-/// ("tcp:192.168.1.5:502", "rtu:/dev/ttyUSB0:9600", "usb:0x0957:0x1234:SERIAL", "hid:...",
-/// "tty:/dev/ttyUSB1") or "simulated".
+/// Where an instrument is connected: `connection` as connection.hpp describes it.
 struct InstrumentConfig {
   std::string connection = "simulated";
   std::string serial_number;

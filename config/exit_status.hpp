@@ -21,6 +21,7 @@ constexpr ExitStatus exit_status(ErrorCode code) {
     case ErrorCode::kLimit:
       return ExitStatus::kBadInput;
     case ErrorCode::kDevice:
+    case ErrorCode::kUnplugged:
     case ErrorCode::kTimeout:
     case ErrorCode::kStale:
     case ErrorCode::kProtocol:

@@ -13,15 +13,16 @@ namespace fogbench::config {
 
 /// What kind of thing went wrong; the executables map it to their exit status.
 enum class ErrorCode {
-  kUsage,     ///< the command line is wrong (exit 2)
-  kBadInput,  ///< a file, a key or a table is wrong (exit 3)
-  kLimit,     ///< a request lies outside the bench's or an instrument's limits (exit 3)
-  kDevice,    ///< an instrument refused, reported an error or is gone (exit 4)
-  kTimeout,   ///< an instrument did not answer, or a quantity did not settle, in time (exit 4)
-  kStale,     ///< a reading is older than it may be, or was repeated (exit 4)
-  kProtocol,  ///< an instrument's answer makes no sense (exit 4)
-  kStore,     ///< the run log cannot be written or read (exit 4)
-  kAborted,   ///< the operator or a signal ended the run (exit 4)
+  kUsage,      ///< the command line is wrong (exit 2)
+  kBadInput,   ///< a file, a key or a table is wrong (exit 3)
+  kLimit,      ///< a request lies outside the bench's or an instrument's limits (exit 3)
+  kDevice,     ///< an instrument refused or reported an error (exit 4)
+  kUnplugged,  ///< an instrument is gone from where it was connected (exit 4)
+  kTimeout,    ///< an instrument did not answer, or a quantity did not settle, in time (exit 4)
+  kStale,      ///< a reading is older than it may be, or was repeated (exit 4)
+  kProtocol,   ///< an instrument's answer makes no sense (exit 4)
+  kStore,      ///< the run log cannot be written or read (exit 4)
+  kAborted,    ///< the operator or a signal ended the run (exit 4)
 };
 
 /// One line: where (file and line, or JSON pointer, or instrument), what was found, what was

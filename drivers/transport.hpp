@@ -5,6 +5,10 @@
 // Every call has a deadline of its own: it returns kTimeout rather than wait past it. After a
 // time-out the transport has drained whatever was late, so that an old answer is never taken for
 // the next one. None of these classes may be used from two threads at once.
+//
+// A transport whose instrument is gone returns kUnplugged, at least once for each time that it
+// went: so a driver knows that the instrument may have lost what it was told. Until it is back
+// every call fails so at once; a call after that reaches it again.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +23,7 @@
 namespace fogbench::drivers {
 
 /// Modbus holding registers of one unit.
-/// Errors: kTimeout, kDevice (exception answer, unplugged), kProtocol.
+/// Errors: kTimeout, kDevice (exception answer), kUnplugged, kProtocol.
 class ModbusTransport {
  public:
   virtual ~ModbusTransport() = default;

@@ -45,7 +45,7 @@ GyroFarEnd::GyroFarEnd(const config::FrameDevice& device, const config::NoiseCoe
 Result<std::size_t> GyroFarEnd::read_some(std::span<std::byte> out) {
   plant_->advance();
   if (faults_.active(FaultKind::kUnplug, plant_->now_s())) {
-    return Error{ErrorCode::kDevice, "gyro: unplugged"};
+    return Error{ErrorCode::kUnplugged, "gyro: unplugged"};
   }
   auto* const begin = reinterpret_cast<std::uint8_t*>(out.data());
   std::uint8_t* to = begin;

@@ -57,7 +57,7 @@ std::int64_t HidFarEnd::newest() const {
 
 Result<std::size_t> HidFarEnd::read_report(std::span<std::uint8_t> out,
                                            drivers::Clock::Duration timeout) {
-  if (line_.fault(FaultKind::kUnplug)) return line_.error(ErrorCode::kDevice, "unplugged");
+  if (line_.fault(FaultKind::kUnplug)) return line_.error(ErrorCode::kUnplugged, "unplugged");
   if (out.size() < device_.report_bytes) {
     return line_.error(ErrorCode::kProtocol, fmt::format("a report has {} bytes, room for {}",
                                                          device_.report_bytes, out.size()));
@@ -120,7 +120,7 @@ void HidFarEnd::encode(std::int64_t number, std::span<std::uint8_t> report) {
 }
 
 Status HidFarEnd::write_report(std::span<const std::uint8_t> report) {
-  if (line_.fault(FaultKind::kUnplug)) return line_.error(ErrorCode::kDevice, "unplugged");
+  if (line_.fault(FaultKind::kUnplug)) return line_.error(ErrorCode::kUnplugged, "unplugged");
   if (report.empty()) return line_.error(ErrorCode::kProtocol, "an empty report");
   return {};
 }

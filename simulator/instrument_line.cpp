@@ -5,7 +5,7 @@
 namespace fogbench::simulator {
 
 Status InstrumentLine::request(drivers::Clock::Duration takes, drivers::Clock::Duration timeout) {
-  if (fault(FaultKind::kUnplug)) return error(ErrorCode::kDevice, "unplugged");
+  if (fault(FaultKind::kUnplug)) return error(ErrorCode::kUnplugged, "unplugged");
   deadline_ = clock_.now() + timeout;
   if (fault(FaultKind::kTimeout)) return wait_in_vain();
   constexpr int kSlowFactor = 20;

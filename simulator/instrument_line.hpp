@@ -25,8 +25,8 @@ class InstrumentLine {
         random_(seed) {}
 
   /// The request travels for `takes` (twenty times as long while slow, but not past `timeout`).
-  /// On success the instrument executes it, on the plant of that moment. kDevice while unplugged,
-  /// kTimeout after `timeout` while the instrument hears nothing.
+  /// On success the instrument executes it, on the plant of that moment. kUnplugged while
+  /// unplugged, kTimeout after `timeout` while the instrument hears nothing.
   Status request(drivers::Clock::Duration takes, drivers::Clock::Duration timeout);
   /// The answer travels back: kTimeout at the request's deadline while answers are late or lost,
   /// kProtocol while they arrive broken.

@@ -165,7 +165,7 @@ TEST_F(HidMagnetometerTest, ASilentDeviceIsATimeout) {
   ASSERT_FALSE(reading);
   EXPECT_EQ(reading.error().code, ErrorCode::kTimeout);
   EXPECT_EQ(reading.error().message, "magnetometer: no report");
-  far_.failure = Error{ErrorCode::kDevice, "unplugged"};
+  far_.failure = Error{ErrorCode::kUnplugged, "unplugged"};
   EXPECT_EQ(magnetometer->read().error().code, ErrorCode::kDevice);
 }
 

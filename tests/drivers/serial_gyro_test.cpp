@@ -137,7 +137,7 @@ TEST_F(SerialGyroTest, AFailingLineIsReportedWithWhatHadArrived) {
   int reads = 0;
   line_.before_read = [&] {
     send_due_frames();
-    if (++reads == 4) line_.failure = Error{ErrorCode::kDevice, "unplugged"};
+    if (++reads == 4) line_.failure = Error{ErrorCode::kUnplugged, "unplugged"};
   };
   GyroBlock block;
   const Status status = (*gyro)->read(block);

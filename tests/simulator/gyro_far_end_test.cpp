@@ -192,7 +192,7 @@ TEST(GyroFarEnd, SaysThatItIsUnpluggedWhileItIs) {
   std::byte buffer[64];
   const auto read = bench.ends.gyro->read_some(buffer);
   ASSERT_FALSE(read);
-  EXPECT_EQ(read.error().code, ErrorCode::kDevice);
+  EXPECT_EQ(read.error().code, ErrorCode::kUnplugged);
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST(HidFarEnd, FailsInTheWaysOfTheScenario) {
   EXPECT_TRUE(at(9.0));
   EXPECT_EQ(at(11.0).error().code, ErrorCode::kTimeout);
   EXPECT_EQ(bench.clock.now().time_since_epoch(), 12s);
-  EXPECT_EQ(at(21.0).error().code, ErrorCode::kDevice);
+  EXPECT_EQ(at(21.0).error().code, ErrorCode::kUnplugged);
   EXPECT_FALSE(bench.ends.magnetometer->write_report(Report{}));
   const Report before = *at(29.0);
   EXPECT_EQ(*at(31.0), before);

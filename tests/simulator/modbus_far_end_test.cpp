@@ -127,7 +127,7 @@ TEST_F(ModbusFarEndTest, FailsInTheWaysOfTheScenario) {
       {FaultKind::kSilentExecution, ErrorCode::kTimeout},
       {FaultKind::kBadChecksum, ErrorCode::kProtocol},
       {FaultKind::kException, ErrorCode::kDevice},
-      {FaultKind::kUnplug, ErrorCode::kDevice}};
+      {FaultKind::kUnplug, ErrorCode::kUnplugged}};
   for (const auto& [kind, code] : errors) {
     TestFarEnds bench(test_bench(), during(kind));
     EXPECT_TRUE(read(bench, 2, 1));
