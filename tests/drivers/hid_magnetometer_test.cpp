@@ -166,7 +166,7 @@ TEST_F(HidMagnetometerTest, ASilentDeviceIsATimeout) {
   EXPECT_EQ(reading.error().code, ErrorCode::kTimeout);
   EXPECT_EQ(reading.error().message, "magnetometer: no report");
   far_.failure = Error{ErrorCode::kUnplugged, "unplugged"};
-  EXPECT_EQ(magnetometer->read().error().code, ErrorCode::kDevice);
+  EXPECT_EQ(magnetometer->read().error().code, ErrorCode::kUnplugged);
 }
 
 TEST_F(HidMagnetometerTest, ALayoutThatCannotBeIsBadInput) {

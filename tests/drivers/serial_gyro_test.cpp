@@ -142,7 +142,7 @@ TEST_F(SerialGyroTest, AFailingLineIsReportedWithWhatHadArrived) {
   GyroBlock block;
   const Status status = (*gyro)->read(block);
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, ErrorCode::kDevice);
+  EXPECT_EQ(status.error().code, ErrorCode::kUnplugged);
   EXPECT_EQ(status.error().message, "gyro: unplugged");
   EXPECT_EQ(block.index.size(), 3u);
 }

@@ -21,7 +21,8 @@ namespace fogbench::support {
 struct FakeLine {
   std::deque<std::byte> bytes;
   std::size_t chunk = SIZE_MAX;
-  std::optional<Error> failure;
+  std::optional<Error> failure, write_failure;
+  std::string written;
   /// Called before every read: puts in what would have arrived by now.
   std::function<void()> before_read;
 
@@ -42,7 +43,11 @@ class FakeSerial final : public drivers::SerialTransport {
     line_.bytes.erase(line_.bytes.begin(), end);
     return count;
   }
-  Status write(std::span<const std::byte>) override { return {}; }
+  Status write(std::span<const std::byte> bytes) override {
+    if (line_.write_failure) return *line_.write_failure;
+    for (const std::byte byte : bytes) line_.written += static_cast<char>(byte);
+    return {};
+  }
 
  private:
   FakeLine& line_;

@@ -1,0 +1,29 @@
+#pragma once
+// How long an operation on a physical line may take. The kernel waits in the machine's time, so
+// this does too, whatever the bench's clock shows.
+
+#include <algorithm>
+#include <chrono>
+
+#include "drivers/clock.hpp"
+
+namespace fogbench::drivers {
+
+class Deadline {
+ public:
+  explicit Deadline(Clock::Duration timeout) : at_(clock_.now() + timeout) {}
+
+  bool passed() const { return clock_.now() >= at_; }
+  /// Never negative.
+  Clock::Duration left() const { return std::max(at_ - clock_.now(), Clock::Duration::zero()); }
+  /// As poll() and the USB libraries take it, rounded up; 0 only when the deadline has passed.
+  int left_ms() const {
+    return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(left()).count());
+  }
+
+ private:
+  SteadyClock clock_;
+  Clock::Instant at_;
+};
+
+}  // namespace fogbench::drivers

@@ -1,0 +1,119 @@
+#include "drivers/serial_port.hpp"
+
+#include <asm/termbits.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/ioctl.h>
+
+#include "tests/support/pty.hpp"
+
+namespace fogbench::drivers {
+namespace {
+
+using support::Pty;
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+
+class SerialPortTest : public testing::Test {
+ protected:
+  std::unique_ptr<SerialTransport> open(std::uint32_t baud = 921600) {
+    auto port = open_serial(pty_.path(), baud, clock_);
+    EXPECT_TRUE(port) << port.error().message;
+    return port ? std::move(*port) : nullptr;
+  }
+  /// What comes within a second.
+  static std::string read(SerialTransport& port, std::size_t count) {
+    std::string text;
+    for (int i = 0; i < 1000 && text.size() < count; ++i) {
+      std::byte bytes[64];
+      const auto got = port.read_some(bytes);
+      EXPECT_TRUE(got) << got.error().message;
+      if (!got) break;
+      text.append(reinterpret_cast<const char*>(bytes), *got);
+      if (*got == 0) poll(nullptr, 0, 1);
+    }
+    return text;
+  }
+
+  Pty pty_;
+  VirtualClock clock_;
+};
+
+TEST_F(SerialPortTest, CarriesEveryByteBothWaysUnchanged) {
+  const auto port = open();
+  std::string all;
+  for (int i = 0; i < 256; ++i) all += static_cast<char>(i);
+  pty_.send(all);
+  EXPECT_EQ(read(*port, 256), all);
+  ASSERT_TRUE(port->write(std::as_bytes(std::span(all))));
+  EXPECT_EQ(pty_.receive(256), all);
+}
+
+TEST_F(SerialPortTest, AnEmptyLineIsNothingAndNoError) {
+  const auto port = open();
+  std::byte bytes[8];
+  const auto count = port->read_some(bytes);
+  ASSERT_TRUE(count) << count.error().message;
+  EXPECT_EQ(*count, 0U);
+}
+
+TEST_F(SerialPortTest, RunsAtRatesThatHaveNoConstant) {
+  for (const std::uint32_t baud : {9600U, 921600U, 1'843'200U, 123'456U}) {
+    const auto port = open(baud);
+    struct termios2 line {};
+    ASSERT_EQ(ioctl(pty_.fd(), TCGETS2, &line), 0);
+    EXPECT_EQ(line.c_ospeed, baud);
+    EXPECT_EQ(line.c_ispeed, baud);
+  }
+}
+
+TEST_F(SerialPortTest, ThrowsAwayWhatTheLineHadKept) {
+  { const auto before = open(); }
+  pty_.send("old");
+  const auto port = open();
+  pty_.send("new");
+  EXPECT_EQ(read(*port, 3), "new");
+}
+
+TEST_F(SerialPortTest, AMissingLineIsNamed) {
+  const auto port = open_serial("/dev/no-such-line", 9600, clock_);
+  ASSERT_FALSE(port);
+  EXPECT_EQ(port.error().code, ErrorCode::kUnplugged);
+  EXPECT_EQ(port.error().message, "cannot open /dev/no-such-line: No such file or directory");
+}
+
+TEST_F(SerialPortTest, WhatIsNoSerialLineIsRefused) {
+  const auto port = open_serial("/dev/null", 9600, clock_);
+  ASSERT_FALSE(port);
+  EXPECT_THAT(port.error().message, HasSubstr("/dev/null is not a serial line"));
+}
+
+TEST_F(SerialPortTest, SaysAtOnceThatTheLineIsGoneAndFindsItAgain) {
+  const auto port = open();
+  std::byte bytes[8];
+  pty_.unplug();
+  for (int i = 0; i < 3; ++i) {
+    const auto gone = port->read_some(bytes);
+    ASSERT_FALSE(gone);
+    EXPECT_EQ(gone.error().code, ErrorCode::kUnplugged);
+    EXPECT_THAT(gone.error().message, HasSubstr(pty_.path()));
+  }
+  EXPECT_EQ(port->write(bytes).error().code, ErrorCode::kUnplugged);
+  pty_.plug_in();
+  clock_.sleep_for(1s);
+  EXPECT_EQ(read(*port, 0), "");
+  std::ignore = port->read_some(bytes);  // opens it, which empties it
+  pty_.send("back");
+  EXPECT_EQ(read(*port, 4), "back");
+}
+
+TEST_F(SerialPortTest, AWriteThatTheLineDoesNotTakeEndsInATimeOut) {
+  const auto port = open();
+  const std::vector<std::byte> much(1 << 20);
+  const Status written = port->write(much);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, ErrorCode::kTimeout);
+}
+
+}  // namespace
+}  // namespace fogbench::drivers
