@@ -19,9 +19,11 @@ constexpr std::size_t kMostWords = 125;  ///< of one Modbus read
 constexpr std::pair<HeatingMode, const char*> kModes[] = {
     {HeatingMode::kOff, "off"}, {HeatingMode::kBoost, "boost"}, {HeatingMode::kNormal, "normal"}};
 
-/// Lost or garbled on the way, as against refused.
+/// Lost or garbled on the way, as against refused. A connection that the other side has closed is
+/// made anew at once.
 bool may_repeat(const Error& error) {
-  return error.code == ErrorCode::kTimeout || error.code == ErrorCode::kProtocol;
+  return error.code == ErrorCode::kTimeout || error.code == ErrorCode::kProtocol ||
+         error.code == ErrorCode::kUnplugged;
 }
 
 }  // namespace

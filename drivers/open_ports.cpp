@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include "config/connection.hpp"
+#include "drivers/hid_port.hpp"
 #include "drivers/line_messages.hpp"
 #include "drivers/modbus_port.hpp"
 #include "drivers/named_error.hpp"
 #include "drivers/serial_port.hpp"
+#include "drivers/usbtmc_port.hpp"
 
 namespace fogbench::drivers {
 namespace {
@@ -38,12 +40,24 @@ Opened<ModbusTransport> open_thermostat(const config::ThermostatConfig& thermost
 Opened<MessageTransport> open_scpi(const config::InstrumentConfig& instrument, Clock& clock) {
   const auto connection = config::parse_connection(instrument.connection);
   if (!connection) return connection.error();
+  if (const auto* usb = std::get_if<config::UsbConnection>(&*connection)) {
+    return open_usbtmc(*usb, clock);
+  }
   if (const auto* tty = std::get_if<config::TtyConnection>(&*connection)) {
     auto serial = open_serial(tty->tty, tty->baud.value_or(kScpiBaud), clock);
     if (!serial) return serial.error();
     return Opened<MessageTransport>(std::make_unique<LineMessages>(std::move(*serial), clock));
   }
-  return wrong(instrument, "tty:, as of a real bench");
+  return wrong(instrument, "usb: or tty:, as of a real bench");
+}
+
+Opened<HidTransport> open_magnetometer(const config::InstrumentConfig& magnetometer, Clock& clock) {
+  const auto connection = config::parse_connection(magnetometer.connection);
+  if (!connection) return connection.error();
+  if (const auto* hid = std::get_if<config::HidConnection>(&*connection)) {
+    return open_hid(*hid, clock);
+  }
+  return wrong(magnetometer, "hid:, as of a real bench");
 }
 
 Opened<SerialTransport> open_gyro(const config::GyroConfig& gyro, Clock& clock) {
@@ -72,6 +86,9 @@ Result<Transports> open_ports(const config::BenchConfig& config, Clock& clock) {
   if (status)
     status = take("coil_vertical", open_scpi(config.coil_vertical, clock), t.coil_vertical);
   if (status) status = take("thermostat", open_thermostat(config.thermostat, clock), t.thermostat);
+  if (status) {
+    status = take("magnetometer", open_magnetometer(config.magnetometer, clock), t.magnetometer);
+  }
   if (status && config.turntable.motorised) {
     status = take("turntable", open_scpi(config.turntable, clock), t.turntable);
   }

@@ -48,6 +48,8 @@ std::optional<double> parse_number(std::string_view text) {
 ScpiDialogue::ScpiDialogue(std::string name, const config::ScpiDevice& device,
                            std::unique_ptr<MessageTransport> transport)
     : name_(std::move(name)),
+      expected_identity_(device.identity),
+      initialise_(device.initialise),
       set_(device.set),
       error_query_(device.error_query),
       transport_(std::move(transport)) {}
@@ -70,24 +72,41 @@ Result<ScpiDialogue> ScpiDialogue::open(std::string name, const config::ScpiDevi
                                       "maximum and is never sent",
                                       device.name, *test));
   }
-  if (const Status cleared = dialogue.transport_->clear(); !cleared) {
-    return named(dialogue.name_, cleared.error());
-  }
-  auto identity = dialogue.query("*IDN?");
-  if (!identity) return identity.error();
-  if (identity->find(device.identity) == std::string::npos) {
-    return dialogue.error(ErrorCode::kDevice, fmt::format("says that it is {}, expected {}",
-                                                          one_line(*identity), device.identity));
-  }
-  dialogue.identity_ = one_line(*identity);
-  if (const auto old = dialogue.drain_errors(); !old) return old.error();
-  for (const std::string& text : device.initialise) {
-    if (const Status done = dialogue.command(text); !done) return done.error();
-  }
+  if (const Status begun = dialogue.begin(); !begun) return begun.error();
   return dialogue;
 }
 
+Status ScpiDialogue::begin() {
+  if (const Status cleared = transport_->clear(); !cleared) return failed("clear", cleared.error());
+  auto identity = query("*IDN?");
+  if (!identity) return identity.error();
+  if (identity->find(expected_identity_) == std::string::npos) {
+    return error(ErrorCode::kDevice, fmt::format("says that it is {}, expected {}",
+                                                 one_line(*identity), expected_identity_));
+  }
+  identity_ = one_line(*identity);
+  if (const auto old = drain_errors(); !old) return old.error();
+  for (const std::string& text : initialise_) {
+    if (Status done = command(text); !done) return done;
+  }
+  return {};
+}
+
+Status ScpiDialogue::resume() {
+  if (!lost_) return {};
+  lost_ = false;  // begin() asks and commands
+  Status begun = begin();
+  if (!begun) lost_ = true;
+  return begun;
+}
+
+Error ScpiDialogue::failed(const std::string& what, const Error& failure) {
+  if (failure.code == ErrorCode::kUnplugged) lost_ = true;
+  return error(failure.code, fmt::format("{}: {}", what, failure.message));
+}
+
 Result<std::string> ScpiDialogue::query(const std::string& question) {
+  if (const Status resumed = resume(); !resumed) return resumed.error();
   std::optional<Error> failure;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (const Status sent = transport_->write(question); !sent) {
@@ -101,7 +120,7 @@ Result<std::string> ScpiDialogue::query(const std::string& question) {
     // Nothing half-said may be left on either side before the question is put again.
     if (const Status cleared = transport_->clear(); !cleared) break;
   }
-  return error(failure->code, fmt::format("{}: {}", question, failure->message));
+  return failed(question, *failure);
 }
 
 Result<double> ScpiDialogue::query_number(const std::string& question) {
@@ -116,9 +135,8 @@ Result<double> ScpiDialogue::query_number(const std::string& question) {
 }
 
 Status ScpiDialogue::command(const std::string& text) {
-  if (const Status sent = transport_->write(text); !sent) {
-    return error(sent.error().code, fmt::format("{}: {}", text, sent.error().message));
-  }
+  if (Status resumed = resume(); !resumed) return resumed;
+  if (const Status sent = transport_->write(text); !sent) return failed(text, sent.error());
   const auto errors = drain_errors();
   if (!errors) return errors.error();
   if (errors->empty()) return {};

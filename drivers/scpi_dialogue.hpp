@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "config/device.hpp"
 #include "drivers/clock.hpp"
@@ -25,6 +26,9 @@ class ScpiDialogue {
   const std::string& name() const { return name_; }
   const std::string& identity() const { return identity_; }
 
+  // An instrument that was unplugged may have forgotten what it was told: the first of these that
+  // reaches it again opens the dialogue anew, with its identity checked, before it does its own.
+
   /// Asks again once when no answer came: a question changes nothing.
   Result<std::string> query(const std::string& question);
   /// kProtocol when the answer is no finite number.
@@ -39,14 +43,23 @@ class ScpiDialogue {
  private:
   ScpiDialogue(std::string name, const config::ScpiDevice& device,
                std::unique_ptr<MessageTransport> transport);
+  /// Clear, identity, old errors, initialisation.
+  Status begin();
+  /// Begins anew after the instrument was gone.
+  Status resume();
+  /// The error as the dialogue's; takes note when the instrument is gone.
+  Error failed(const std::string& what, const Error& error);
   /// All entries, joined; empty when there were none.
   Result<std::string> drain_errors();
 
   std::string name_;
+  std::string expected_identity_;
+  std::vector<std::string> initialise_;
   std::string identity_;
   std::string set_;
   std::string error_query_;
   std::unique_ptr<MessageTransport> transport_;
+  bool lost_ = false;  ///< since the dialogue was begun
 };
 
 }  // namespace fogbench::drivers

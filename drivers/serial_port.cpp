@@ -5,12 +5,19 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <pthread.h>
+#include <sys/eventfd.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
+#include <mutex>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 #include "drivers/deadline.hpp"
 #include "drivers/file_descriptor.hpp"
@@ -23,6 +30,10 @@ constexpr Clock::Duration kWriteTimeout = std::chrono::seconds{1};
 
 /// A start bit finds its frame again every ten bits: 3 % is what a receiver bears.
 constexpr double kRateTolerance = 0.03;
+
+constexpr std::size_t kMostAtOnce = 4096;
+/// Four minutes of a gyro with 36 bytes a thousand times a second.
+constexpr std::size_t kMostKept = std::size_t{8} << 20;
 
 std::string reason(int error) {
   return std::generic_category().message(error);
@@ -68,10 +79,78 @@ Result<std::unique_ptr<FileDescriptor>> open_line(const std::string& tty, std::u
   return line;
 }
 
+/// An open line and what has come from it. Its thread ends with it, or with the line.
+class Line {
+ public:
+  explicit Line(std::unique_ptr<FileDescriptor> opened)
+      : fd_(std::move(opened)), stop_(eventfd(0, EFD_CLOEXEC)) {
+    // The process's signals are for the thread that waits for a person or an instrument.
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    thread_ = std::thread([this] { receive(); });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    pthread_setname_np(thread_.native_handle(), "serial");
+  }
+  Line(const Line&) = delete;
+  Line& operator=(const Line&) = delete;
+  ~Line() {
+    eventfd_write(stop_.get(), 1);
+    thread_.join();
+  }
+
+  int fd() const { return fd_->get(); }
+
+  /// At most out.size() bytes; an error only when all that had come is taken.
+  Result<std::size_t> take(std::span<std::byte> out) {
+    const std::lock_guard lock(mutex_);
+    const std::size_t count = std::min(out.size(), arrived_.size() - taken_);
+    if (count == 0 && !failure_.empty()) return Error{ErrorCode::kUnplugged, failure_};
+    std::copy_n(arrived_.begin() + static_cast<std::ptrdiff_t>(taken_), count, out.begin());
+    taken_ += count;
+    if (taken_ == arrived_.size()) {
+      arrived_.clear();
+      taken_ = 0;
+    }
+    return count;
+  }
+
+ private:
+  void receive() {
+    std::vector<std::byte> bytes(kMostAtOnce);
+    pollfd ready[] = {{fd(), POLLIN, 0}, {stop_.get(), POLLIN, 0}};
+    while (::poll(ready, 2, -1) >= 0 || errno == EINTR) {
+      if (ready[1].revents != 0) return;
+      const ssize_t count = ::read(fd(), bytes.data(), bytes.size());
+      if (count < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+      const std::string why = count == 0 ? "it has hung up" : count < 0 ? reason(errno) : "";
+      const std::lock_guard lock(mutex_);
+      failure_ = why;
+      if (count <= 0) return;
+      // When nobody has asked for minutes the newest is lost, as it would be in the kernel.
+      if (arrived_.size() < kMostKept) {
+        arrived_.insert(arrived_.end(), bytes.begin(), bytes.begin() + count);
+      }
+    }
+  }
+
+  std::unique_ptr<FileDescriptor> fd_;
+  FileDescriptor stop_;
+  std::mutex mutex_;
+  std::vector<std::byte> arrived_;  ///< of which the first taken_ were asked for
+  std::size_t taken_ = 0;
+  std::string failure_;  ///< why the line has ended; empty while it has not
+  std::thread thread_;
+};
+
 class SerialPort final : public SerialTransport {
  public:
   SerialPort(std::string tty, std::uint32_t baud, Clock& clock)
-      : tty_(std::move(tty)), line_(clock, [this, baud] { return open_line(tty_, baud); }) {}
+      : tty_(std::move(tty)), line_(clock, [this, baud]() -> Result<std::unique_ptr<Line>> {
+          auto opened = open_line(tty_, baud);
+          if (!opened) return opened.error();
+          return std::make_unique<Line>(std::move(*opened));
+        }) {}
 
   Status connect() {
     const auto line = line_.get();
@@ -81,26 +160,25 @@ class SerialPort final : public SerialTransport {
   Result<std::size_t> read_some(std::span<std::byte> out) override {
     const auto line = line_.get();
     if (!line) return line.error();
-    const ssize_t count = ::read((*line)->get(), out.data(), out.size());
-    if (count > 0) return static_cast<std::size_t>(count);
-    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return std::size_t{0};
-    return lost(count == 0 ? "it has hung up" : reason(errno));
+    const auto count = (*line)->take(out);
+    return count ? count : lost(count.error().message);
   }
 
   Status write(std::span<const std::byte> bytes) override {
     const auto line = line_.get();
     if (!line) return line.error();
+    const int fd = (*line)->fd();
     const Deadline deadline(kWriteTimeout);
     while (!bytes.empty()) {
-      const ssize_t count = ::write((*line)->get(), bytes.data(), bytes.size());
+      const ssize_t count = ::write(fd, bytes.data(), bytes.size());
       if (count >= 0) {
         bytes = bytes.subspan(static_cast<std::size_t>(count));
         continue;
       }
       if (errno != EAGAIN && errno != EINTR) return lost(reason(errno));
-      pollfd room{(*line)->get(), POLLOUT, 0};
+      pollfd room{fd, POLLOUT, 0};
       if (::poll(&room, 1, deadline.left_ms()) == 0 || deadline.passed()) {
-        ioctl((*line)->get(), TCFLSH, TCOFLUSH);
+        ioctl(fd, TCFLSH, TCOFLUSH);
         return Error{ErrorCode::kTimeout,
                      fmt::format("{} does not take {} bytes", tty_, bytes.size())};
       }
@@ -115,7 +193,7 @@ class SerialPort final : public SerialTransport {
   }
 
   std::string tty_;
-  Reconnecting<FileDescriptor> line_;
+  Reconnecting<Line> line_;
 };
 
 }  // namespace

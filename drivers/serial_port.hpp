@@ -1,6 +1,10 @@
 #pragma once
 // A serial line of the operating system: raw, eight data bits, no parity, one stop bit, at any rate
 // that the adapter can make.
+//
+// The kernel keeps two seconds of a gyro's stream, and whoever commands a bench waits longer: for a
+// turntable, for a person, for an instrument that does not answer. So a thread of the port's own,
+// "serial", reads all the time and keeps what has come until it is asked for.
 
 #include <cstdint>
 #include <memory>

@@ -119,11 +119,57 @@ TEST_F(ScpiDialogueTest, ACommandIsSentOnceEvenWhenItsTransferFails) {
 
 TEST_F(ScpiDialogueTest, AnUnpluggedInstrumentIsNotAskedAgain) {
   ScpiDialogue dialogue = opened();
-  far_.read_failures = {{ErrorCode::kDevice, "unplugged"}};
+  far_.read_failures = {{ErrorCode::kUnplugged, "unplugged"}};
   const auto value = dialogue.query("MEAS:CURR?");
   ASSERT_FALSE(value);
-  EXPECT_EQ(value.error().code, ErrorCode::kDevice);
+  EXPECT_EQ(value.error().code, ErrorCode::kUnplugged);
   EXPECT_EQ(far_.sent.size(), 1u);
+}
+
+TEST_F(ScpiDialogueTest, AnInstrumentThatWasUnpluggedIsIdentifiedAndInitialisedAgain) {
+  const std::vector<std::string> begun{"*IDN?",     "SYST:ERR?", "FUNC:MODE CURR",
+                                       "SYST:ERR?", "VOLT 30",   "SYST:ERR?"};
+  const Error gone{ErrorCode::kUnplugged, "unplugged"};
+  const std::pair<std::function<void(ScpiDialogue&)>, std::vector<std::string>> ways[] = {
+      {[&](ScpiDialogue& d) {
+         far_.read_failures = {gone};
+         EXPECT_FALSE(d.query("MEAS:CURR?"));
+       },
+       {"MEAS:CURR?"}},
+      {[&](ScpiDialogue& d) {
+         far_.write_failures = {gone};
+         EXPECT_FALSE(d.set(1.0));
+       },
+       {"CURR 0.000000", "SYST:ERR?"}}};
+  for (const auto& [lose, then] : ways) {
+    ScpiDialogue dialogue = opened();
+    lose(dialogue);
+    far_.sent.clear();
+    far_.write_failures = {gone, gone};  // not back yet
+    EXPECT_EQ(dialogue.query("MEAS:CURR?").error().code, ErrorCode::kUnplugged);
+    EXPECT_EQ(dialogue.set(0.0).error().code, ErrorCode::kUnplugged);
+    EXPECT_TRUE(far_.sent.empty());
+    if (then.front() == "MEAS:CURR?") {
+      EXPECT_TRUE(dialogue.query("MEAS:CURR?"));
+    } else {
+      EXPECT_TRUE(dialogue.set(0.0));
+    }
+    std::vector<std::string> expected = begun;
+    expected.insert(expected.end(), then.begin(), then.end());
+    EXPECT_EQ(far_.sent, expected);
+    EXPECT_TRUE(dialogue.query("MEAS:CURR?"));
+    EXPECT_EQ(far_.sent.size(), expected.size() + 1) << "once only";
+  }
+}
+
+TEST_F(ScpiDialogueTest, AnotherInstrumentInItsPlaceIsNotCommanded) {
+  ScpiDialogue dialogue = opened();
+  far_.read_failures = {{ErrorCode::kUnplugged, "unplugged"}};
+  EXPECT_FALSE(dialogue.query("MEAS:CURR?"));
+  far_.answers["*IDN?"] = "ACME,Toaster";
+  far_.sent.clear();
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(dialogue.set(1.0).error().code, ErrorCode::kDevice);
+  EXPECT_FALSE(far_.was_sent("CURR 1.000000"));
 }
 
 TEST_F(ScpiDialogueTest, NumbersAreReadAsInstrumentsWriteThem) {
