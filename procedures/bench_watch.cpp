@@ -120,14 +120,29 @@ Status BenchWatch::note(Outage& outage, const Status& outcome) {
                  fmt::format("{}: answers again after {:.1f} s", outage.instrument, lasted_s));
   }
   const std::string& fault = outcome.error().message;
+  const bool unplugged = outcome.error().code == ErrorCode::kUnplugged;
   if (!outage.since) {
     outage.since = now;
-    return event("warning", fmt::format("{}: {}; its readings are missing until it answers",
-                                        outage.instrument, fault));
+    const auto noted = event(
+        "warning",
+        fmt::format("{}: {}; its readings are missing until it answers", outage.instrument, fault));
+    if (!noted) return noted;
   }
-  if (now - *outage.since <= drivers::from_seconds(kLongestOutage.count())) return {};
-  return Error{outcome.error().code, fmt::format("{}: no reading for {} s: {}", outage.instrument,
-                                                 kLongestOutage.count(), fault)};
+  if (unplugged && field_guarded_) return outcome;
+  const config::Seconds longest = unplugged ? kLongestAbsence : kLongestOutage;
+  if (now - *outage.since <= drivers::from_seconds(longest.count())) return {};
+  // Nobody waits for it any longer, so this is no interruption any more.
+  return Error{
+      unplugged ? ErrorCode::kDevice : outcome.error().code,
+      fmt::format("{}: no reading for {} s: {}", outage.instrument, longest.count(), fault)};
+}
+
+bool BenchWatch::all_answer() const {
+  for (const Outage* outage :
+       {&gyro_, &thermostat_, &magnetometer_, &coil_horizontal_, &coil_vertical_}) {
+    if (outage->since) return false;
+  }
+  return true;
 }
 
 Status BenchWatch::check_temperature() const {

@@ -3,9 +3,11 @@
 // instruments once a second, and hands everything to the recorder.
 //
 // A read that fails is harmless: it is warned of once, the value is missing, and the next second
-// tries again. An instrument that stays silent for longer than kLongestOutage ends the run; so does
-// a temperature beyond the bench's limit. A reading that repeats an old time stamp is stale and
-// counts as failed: it never enters an average.
+// tries again. An instrument that stays silent for longer than kLongestOutage ends the run, one
+// that is unplugged after kLongestAbsence; so does a temperature beyond the bench's limit. While
+// the coils carry current nobody may leave unnoticed: an instrument that is unplugged then
+// interrupts the step at once. A reading that repeats an old time stamp is stale and counts as
+// failed: it never enters an average.
 
 #include <array>
 #include <deque>
@@ -25,6 +27,8 @@ class BenchWatch {
   static constexpr drivers::Clock::Duration kPeriod = std::chrono::seconds{1};
   /// Longer than an instrument's restart, shorter than anything thermal.
   static constexpr config::Seconds kLongestOutage{30.0};
+  /// Time to find the cable, and to plug it in again.
+  static constexpr config::Seconds kLongestAbsence{120.0};
   /// How long the slow readings are kept: a window looks back to just before its start.
   static constexpr double kRecentS = 60.0;
   /// How far above its limit a temperature may overshoot.
@@ -40,8 +44,8 @@ class BenchWatch {
   Status start();
 
   /// Sleeps until `deadline` or the next second, whichever is first, then drains the stream, and on
-  /// the second reads the slow instruments. Errors: kStore from the recorder, kTimeout for an
-  /// outage, kLimit for a temperature.
+  /// the second reads the slow instruments. Errors: kStore from the recorder, kLimit for a
+  /// temperature, the instrument's for an outage; kUnplugged at once while the field is guarded.
   Status tick(Instant deadline);
   /// What the last tick brought.
   const drivers::GyroBlock& frames() const { return frames_; }
@@ -56,6 +60,11 @@ class BenchWatch {
   Instant now() const { return clock_.now(); }
   double time_s(Instant instant) const { return drivers::to_seconds(instant - power_on_); }
   double now_s() const { return time_s(now()); }
+
+  /// Whether the coils carry current: an instrument that is unplugged then interrupts.
+  void guard_field(bool on) { field_guarded_ = on; }
+  /// False while an instrument's readings are missing.
+  bool all_answer() const;
 
   void set_azimuth(config::Degree azimuth) { azimuth_ = azimuth; }
   Status event(const std::string& severity, const std::string& message,
@@ -86,6 +95,7 @@ class BenchWatch {
   Instant power_on_{};
   Instant next_reading_{};
   config::Degree azimuth_{0.0};
+  bool field_guarded_ = false;
   Outage gyro_{"gyro", {}}, thermostat_{"thermostat", {}}, magnetometer_{"magnetometer", {}},
       coil_horizontal_{"coil_horizontal", {}}, coil_vertical_{"coil_vertical", {}};
 };

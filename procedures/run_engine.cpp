@@ -42,6 +42,10 @@ class RunEngine::Run {
   Status execute_steps();
   Result<StepResult> run_step(std::size_t index);
   Status pause_if_asked();
+  /// An instrument was unplugged: coils to 0 A, read back, until all are there again; then the step
+  /// or its block begins anew. An error when that takes too long or happens too often.
+  Status interrupt(const std::string& reason);
+  Status await_return(const std::string& reason);
   /// Back to the block's first step, or an error when it has been tried often enough.
   Status restart_block(const std::string& reason);
   Status after_tick();
@@ -60,6 +64,7 @@ class RunEngine::Run {
   std::size_t step_ = 0;
   std::string says_;
   int block_ = 0, block_tries_ = 0;
+  int step_tries_ = 0;  ///< of a step outside any block
   std::size_t points_ = 0, block_points_ = 0;
 };
 
@@ -87,6 +92,11 @@ Status RunEngine::Run::execute_steps() {
       block_points_ = 0;
     }
     const auto result = run_step(step_);
+    if (!result && result.error().code == ErrorCode::kUnplugged) {
+      const auto interrupted = interrupt(result.error().message);
+      if (!interrupted) return interrupted;
+      continue;
+    }
     if (!result) {
       if (result.error().code == ErrorCode::kStore) return result.error();
       return Error{result.error().code,
@@ -95,6 +105,7 @@ Status RunEngine::Run::execute_steps() {
     }
     if (result->voided.empty()) {
       ++step_;
+      step_tries_ = 0;
       continue;
     }
     const auto restarted = restart_block(result->voided);
@@ -128,11 +139,60 @@ Status RunEngine::Run::pause_if_asked() {
   auto noted = watch_.event("info", says_);
   if (!noted) return noted;
   while (engine_.pause_requested_) {
-    const auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
+    auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
+    if (!ticked && ticked.error().code == ErrorCode::kUnplugged) {
+      ticked = await_return(ticked.error().message);
+    }
     if (!ticked) return ticked;
   }
   enter(RunEvent::kResume);
   return watch_.event("info", "resumed");
+}
+
+Status RunEngine::Run::interrupt(const std::string& reason) {
+  const PlannedStep& step = plan_.steps[step_];
+  const auto back = await_return(reason);
+  if (!back) {
+    if (back.error().code == ErrorCode::kStore || back.error().code == ErrorCode::kAborted) {
+      return back;
+    }
+    return Error{back.error().code,
+                 fmt::format("step {}, {}: {}", step.path, step.says, back.error().message)};
+  }
+  if (step.block != 0) return restart_block(reason);
+  if (++step_tries_ == RunSession::kTries) {
+    return Error{ErrorCode::kDevice, fmt::format("step {}, {}: interrupted {} times: {}", step.path,
+                                                 step.says, step_tries_, reason)};
+  }
+  return watch_.event("warning", fmt::format("step {} begins again: {}", step.path, reason));
+}
+
+Status RunEngine::Run::await_return(const std::string& reason) {
+  const auto begun = engine_.clock_.now();
+  auto noted = watch_.event("warning", reason + "; coils to 0 A until it is back");
+  if (!noted) return noted;
+  says_ = "waiting for an instrument: " + reason;
+  for (;;) {
+    const auto off = session_.switch_off();
+    // Every reading must have come since: a tick reads all of them.
+    const auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
+    if (!ticked) return ticked;
+    const Seconds waited{to_seconds(engine_.clock_.now() - begun)};
+    if (off && watch_.new_row() != nullptr && watch_.all_answer()) {
+      noted = watch_.event("info", fmt::format("all instruments answer after {:.1f} s, the coils "
+                                               "read back 0 A",
+                                               waited.count()));
+      if (!noted) return noted;
+      // A block sets its own currents.
+      const auto restored = session_.restore(plan_.steps[step_].block == 0);
+      if (restored || restored.error().code != ErrorCode::kUnplugged) return restored;
+    }
+    if (waited > BenchWatch::kLongestAbsence) {
+      return Error{ErrorCode::kDevice, fmt::format("still not back after {}: {}",
+                                                   duration_text(BenchWatch::kLongestAbsence),
+                                                   off ? reason : off.error().message)};
+    }
+  }
 }
 
 Status RunEngine::Run::restart_block(const std::string& reason) {

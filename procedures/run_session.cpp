@@ -40,9 +40,9 @@ Result<StepResult> RunSession::run(const PlannedStep& step) {
 
 Result<StepResult> RunSession::act(const SetTemperature& step) {
   drivers::Thermostat& thermostat = *bench_.thermostat;
-  heated_ = step.mode != HeatingMode::kOff;
+  heating_ = step;
   // The target first: a mode that heats must never act on an old target.
-  if (heated_) {
+  if (step.mode != HeatingMode::kOff) {
     const auto set = thermostat.set_target(step.target);
     if (!set) return set.error();
   }
@@ -72,8 +72,10 @@ Result<StepResult> RunSession::act(const SettleTemperature& step) {
     const MonitorRow* row = watch_.new_row();
     if (row == nullptr || std::isnan(row->thermostat.working_1.value)) continue;
     const drivers::ThermostatReading& t = row->thermostat;
+    // The thermostat holds a target; else the room is where it settles.
+    const bool heated = heating_ && heating_->mode != HeatingMode::kOff;
     detector.add(watch_.time_s(t.taken_at), working_temperature_c(t),
-                 heated_ ? t.target.value : t.ambient.value);
+                 heated ? t.target.value : t.ambient.value);
   }
   const auto recorded = transients.finish();
   if (!recorded) return recorded.error();

@@ -43,7 +43,16 @@ class RunSession {
 
   Status start();
   Status tick(drivers::Clock::Instant deadline);
+  /// kUnplugged when an instrument was gone that the step, or a field, depends on: the coils are to
+  /// be switched off and the step begun again when it is back.
   Result<StepResult> run(const PlannedStep& step);
+
+  /// One try to bring the coils to 0 A, read back, output off; and to reach whatever the watch does
+  /// not read. Done when it returns no error.
+  Status switch_off();
+  /// After switch_off(): the heating as it was commanded, where the thermostat has forgotten it,
+  /// and with `currents` the coils as they were.
+  Status restore(bool currents);
 
  private:
   Result<StepResult> act(const SetTemperature& step);
@@ -75,10 +84,13 @@ class RunSession {
   OnPoint on_point_;
   const PlannedStep* step_ = nullptr;
 
-  bool heated_ = false;  ///< the thermostat holds a target; else the room is where it settles
+  /// The last that was commanded; nothing before the first.
+  std::optional<SetTemperature> heating_;
   Degree azimuth_{0.0};
   bool energised_ = false;
   config::Ampere horizontal_, vertical_;  ///< as set
+  /// What the coils carried when they were first switched off; nothing when they carry it still.
+  std::optional<std::array<config::Ampere, 2>> switched_off_;
   /// Currents that null the ambient field at this azimuth.
   std::optional<std::array<config::Ampere, 2>> zero_;
 };

@@ -91,6 +91,8 @@ Result<StepResult> RunSession::act(const SweepLevel& step) {
   if (!zero_) {
     return Error{ErrorCode::kBadInput, "a sweep without a compensated zero at this azimuth"};
   }
+  const auto energised = energise();
+  if (!energised) return energised.error();
   auto [horizontal, vertical] = *zero_;
   const bool up = step.axis == Axis::kX;
   const Microtesla field_up = up ? step.level : step.other_pair;
@@ -157,10 +159,48 @@ Status RunSession::set_currents(Ampere horizontal, Ampere vertical) {
     if (done) present = wanted;
     return done;
   };
-  const auto done = set(config_.coil_horizontal, *bench_.coil_horizontal, horizontal, horizontal_,
-                        "coil_horizontal");
-  if (!done) return done;
-  return set(config_.coil_vertical, *bench_.coil_vertical, vertical, vertical_, "coil_vertical");
+  auto done = set(config_.coil_horizontal, *bench_.coil_horizontal, horizontal, horizontal_,
+                  "coil_horizontal");
+  if (done) {
+    done = set(config_.coil_vertical, *bench_.coil_vertical, vertical, vertical_, "coil_vertical");
+  }
+  watch_.guard_field(horizontal_ != Ampere{} || vertical_ != Ampere{});
+  return done;
+}
+
+Status RunSession::switch_off() {
+  if (!switched_off_ && energised_) switched_off_ = {horizontal_, vertical_};
+  energised_ = false;
+  horizontal_ = vertical_ = Ampere{};
+  watch_.guard_field(false);
+  const auto horizontal = bench_.coil_horizontal->make_safe();
+  const auto vertical = bench_.coil_vertical->make_safe();
+  if (!horizontal) return horizontal;
+  if (!vertical) return vertical;
+  const auto azimuth = bench_.turntable->azimuth();
+  return azimuth ? Status{} : azimuth.error();
+}
+
+Status RunSession::restore(bool currents) {
+  if (heating_) {
+    const auto reading = bench_.thermostat->read();
+    if (!reading) return reading.error();
+    if (reading->mode != heating_->mode) {
+      const auto heated = act(*heating_);
+      if (!heated) return heated.error();
+      const auto noted =
+          watch_.event("warning", "thermostat: had lost its heating mode, set again");
+      if (!noted) return noted;
+    }
+  }
+  if (currents && switched_off_) {
+    const auto energised = energise();
+    if (!energised) return energised;
+    const auto set = set_currents((*switched_off_)[0], (*switched_off_)[1]);
+    if (!set) return set;
+  }
+  switched_off_.reset();
+  return {};
 }
 
 Result<std::array<double, 3>> RunSession::measure_field() {

@@ -52,8 +52,12 @@ struct FakePlant {
     return false;
   };
 
+  /// Asked before every call with its name: true makes it fail as one to an unplugged instrument.
+  std::function<bool(const std::string&)> gone = [](const std::string&) { return false; };
+
   Status call(const std::string& name, bool changes = false) {
     follow();
+    if (gone(name)) return Error{ErrorCode::kUnplugged, name + ": unplugged"};
     if (changes) commands.push_back(name);
     if (fails(++calls, name)) return Error{ErrorCode::kTimeout, name + " did not answer"};
     return {};
