@@ -1,9 +1,10 @@
-// fogbenchd: runs procedures on a bench in the foreground, one after the other, and logs what it
-// does. SIGTERM and SIGINT abort to the safe state.
+// fogbenchd: runs procedures on a bench, simulated or real, in the foreground, one after the other,
+// and logs what it does. SIGTERM and SIGINT abort to the safe state.
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>
@@ -16,6 +17,7 @@
 #include "daemon/session.hpp"
 #include "daemon/simulated_operator.hpp"
 #include "daemon/store.hpp"
+#include "daemon/terminal_operator.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -25,6 +27,7 @@ struct DaemonOptions {
   std::optional<std::uint64_t> seed;
   std::string store;
   Speed speed = Speed::kRealtime;
+  double clock_speed = 1.0;
   std::vector<std::string> procedures;
 };
 
@@ -38,16 +41,42 @@ void declare(CLI::App& app, DaemonOptions& options) {
                  "What the simulated gyro hides (default: clean)");
   add_seed_option(app, options.seed);
   add_speed_option(app, options.speed, "realtime");
+  app.add_option("--clock-speed", options.clock_speed,
+                 "Bench seconds in a second, of a bench that is served faster than real")
+      ->check(CLI::Range(1.0, 1000.0));
   app.footer(
+      "A bench whose instruments have connections is reached through them; a prompt is answered "
+      "on\n"
+      "standard input.\n"
       "Examples:\n  fogbenchd --bench simulated --speed max thermostat-steps coil-sweep\n"
+      "  fogbenchd --bench bench.json coil-sweep\n"
       "Exit status: 0 done, 2 usage, 3 bad input, 4 bench or run log failed.");
+}
+
+/// Makes the setup one of a real bench where that is what the file describes.
+Status choose_bench(const DaemonOptions& options, Setup& setup) {
+  const auto simulated = is_simulated(setup.bench);
+  if (!simulated) return simulated.error();
+  setup.simulated = *simulated;
+  setup.clock_speed = options.clock_speed;
+  if (setup.simulated) return {};
+  if (options.speed == Speed::kMaximum || options.seed ||
+      options.setup.scenario != SetupOptions{}.scenario) {
+    return Error{
+        ErrorCode::kUsage,
+        fmt::format("--scenario, --seed and --speed max are for the simulated bench; bench "
+                    "{} is a real one",
+                    setup.bench.name)};
+  }
+  setup.scenario_json.clear();
+  return {};
 }
 
 /// Everything is read, checked and planned before the bench is touched.
 Status run(const DaemonOptions& options) {
   auto setup = load_setup(options.setup);
   if (!setup) return setup.error();
-  if (const Status ok = check_simulated(setup->bench); !ok) return ok;
+  if (const Status chosen = choose_bench(options, *setup); !chosen) return chosen;
   std::vector<PlannedProcedure> planned;
   for (const std::string& name : options.procedures) {
     auto procedure = plan_procedure(name, setup->bench, {});
@@ -64,11 +93,16 @@ Status run(const DaemonOptions& options) {
   }
   const std::uint64_t seed = options.seed.value_or(random_seed());
 
-  SimulatedOperator person;
+  SimulatedOperator obedient;
+  TerminalOperator at_terminal(STDIN_FILENO, stderr, AbortOnSignal::asked);
+  drivers::Operator& person =
+      setup->simulated ? static_cast<drivers::Operator&>(obedient) : at_terminal;
   const std::string bench = setup->bench.name;
+  const bool simulated = setup->simulated;
   auto session = Session::open(std::move(*setup), seed, store, options.speed, person);
   if (!session) return session.error();
-  spdlog::info("bench {} is in its safe state; run log {}, seed {}", bench, store.string(), seed);
+  spdlog::info("bench {} is in its safe state; run log {}{}", bench, store.string(),
+               simulated ? fmt::format(", seed {}", seed) : "");
   procedures::RunEngine& engine = (*session)->engine();
   const AbortOnSignal abort_on_signal(engine);
   std::size_t step = 0;

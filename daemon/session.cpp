@@ -11,6 +11,7 @@
 #include "config/json_file.hpp"
 #include "config/paths.hpp"
 #include "drivers/open_bench.hpp"
+#include "drivers/open_ports.hpp"
 #include "simulator/simulated_bench.hpp"
 
 namespace fogbench::daemon {
@@ -80,19 +81,26 @@ Result<Setup> load_setup(const SetupOptions& options) {
                std::move(*scenario_text)};
 }
 
-Status check_simulated(const config::BenchConfig& bench) {
-  const std::pair<const char*, const config::InstrumentConfig*> instruments[] = {
-      {"thermostat", &bench.thermostat},       {"coil_horizontal", &bench.coil_horizontal},
-      {"coil_vertical", &bench.coil_vertical}, {"magnetometer", &bench.magnetometer},
-      {"turntable", &bench.turntable},         {"gyro", &bench.gyro}};
+Result<bool> is_simulated(const config::BenchConfig& bench) {
+  std::vector<std::pair<const char*, const config::InstrumentConfig*>> instruments = {
+      {"thermostat", &bench.thermostat},
+      {"coil_horizontal", &bench.coil_horizontal},
+      {"coil_vertical", &bench.coil_vertical},
+      {"magnetometer", &bench.magnetometer},
+      {"gyro", &bench.gyro}};
+  if (bench.turntable.motorised) instruments.emplace_back("turntable", &bench.turntable);
+  const char* simulated = nullptr;
+  const char* real = nullptr;
   for (const auto& [name, instrument] : instruments) {
-    if (instrument->connection == "simulated") continue;
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("bench {}: /{}/connection is \"{}\"; this version reaches "
-                             "\"simulated\" instruments only",
-                             bench.name, name, instrument->connection)};
+    (instrument->connection == "simulated" ? simulated : real) = name;
   }
-  return {};
+  if (simulated != nullptr && real != nullptr) {
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("bench {}: /{}/connection is \"simulated\" and /{}/connection is "
+                             "not; expected all of them simulated, or none",
+                             bench.name, simulated, real)};
+  }
+  return real == nullptr;
 }
 
 Result<PlannedProcedure> plan_procedure(const std::string& name, const config::BenchConfig& bench,
@@ -134,13 +142,15 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
   std::unique_ptr<Session> session(new Session(std::move(setup), seed));
   const Setup& made = session->setup_;
   if (speed == Speed::kRealtime) {
-    session->clock_ = std::make_unique<drivers::SteadyClock>();
+    session->clock_ = std::make_unique<drivers::SteadyClock>(made.clock_speed);
   } else {
     // Starts today, so that the record's dates mean something; nothing measured depends on it.
     session->clock_ = std::make_unique<drivers::VirtualClock>(drivers::SteadyClock().wall_now());
   }
-  // Before the record, so that a scenario which cannot be simulated leaves nothing behind.
-  auto transports = simulator::simulate_bench(made.bench, made.scenario, seed, *session->clock_);
+  // Before the record, so that a bench which cannot be reached or simulated leaves nothing behind.
+  auto transports =
+      made.simulated ? simulator::simulate_bench(made.bench, made.scenario, seed, *session->clock_)
+                     : drivers::open_ports(made.bench, *session->clock_);
   if (!transports) return transports.error();
   const auto record = open_record(*session);
   if (!record) return record.error();
@@ -160,7 +170,7 @@ Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure) {
   header.bench = setup_.bench.name;
   header.bench_json = setup_.bench_json;
   header.scenario_json = setup_.scenario_json;
-  header.seed = seed_;
+  if (setup_.simulated) header.seed = seed_;
   header.gyro_serial_number = setup_.bench.gyro.serial_number;
   header.software_version = FOGBENCH_VERSION;
   header.started_at = drivers::utc_text(clock_->wall_now());

@@ -32,14 +32,19 @@ struct Setup {
   config::BenchConfig bench;
   std::string bench_json;
   config::ScenarioConfig scenario;
-  std::string scenario_json;
+  std::string scenario_json;  ///< empty on a real bench
+  /// false: the instruments are reached where the bench's file says.
+  bool simulated = true;
+  /// Bench seconds in a second: more than 1 only for a bench that is served faster than real.
+  double clock_speed = 1.0;
 };
 
 /// Errors: kBadInput.
 Result<Setup> load_setup(const SetupOptions& options);
 
-/// kBadInput when an instrument is connected to anything but the simulated bench.
-Status check_simulated(const config::BenchConfig& bench);
+/// Whether all instruments are simulated; kBadInput when only some are. A turntable that the
+/// operator turns is neither.
+Result<bool> is_simulated(const config::BenchConfig& bench);
 
 using config::Parameters;
 
