@@ -10,6 +10,7 @@
 
 #include "drivers/deadline.hpp"
 #include "drivers/reconnect.hpp"
+#include "drivers/usb_adapter.hpp"
 
 namespace fogbench::drivers {
 namespace {
@@ -161,7 +162,14 @@ Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::TcpConnection
 
 Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::RtuConnection& connection,
                                                      std::uint8_t unit, Clock& clock) {
-  const auto open = [connection, unit] {
+  // Which adapter it was when first opened: another one may get its name when it is pulled.
+  const std::string adapter = usb_adapter_of(connection.tty);
+  const auto open = [connection, unit, adapter]() -> Result<std::unique_ptr<ModbusLine>> {
+    if (const std::string now = usb_adapter_of(connection.tty); now != adapter && !now.empty()) {
+      return Error{ErrorCode::kUnplugged,
+                   fmt::format("{} is another adapter now: found {}, expected {}", connection.tty,
+                               now, adapter)};
+    }
     return connect(modbus_new_rtu(connection.tty.c_str(), static_cast<int>(connection.baud),
                                   connection.parity, 8, connection.stop_bits),
                    connection.tty, unit);

@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "drivers/deadline.hpp"
 #include "drivers/file_descriptor.hpp"
 #include "drivers/reconnect.hpp"
+#include "drivers/usb_adapter.hpp"
 
 namespace fogbench::drivers {
 namespace {
@@ -149,6 +151,7 @@ class SerialPort final : public SerialTransport {
       : tty_(std::move(tty)), line_(clock, [this, baud]() -> Result<std::unique_ptr<Line>> {
           auto opened = open_line(tty_, baud);
           if (!opened) return opened.error();
+          if (Status same = check_adapter(); !same) return same.error();
           return std::make_unique<Line>(std::move(*opened));
         }) {}
 
@@ -187,12 +190,24 @@ class SerialPort final : public SerialTransport {
   }
 
  private:
+  /// A name such as /dev/ttyUSB0 may belong to another adapter after the first one was pulled.
+  Status check_adapter() {
+    const std::string adapter = usb_adapter_of(tty_);
+    if (!adapter_) adapter_ = adapter;
+    if (adapter == *adapter_) return {};
+    return Error{ErrorCode::kUnplugged,
+                 fmt::format("{} is another adapter now: found {}, expected "
+                             "{}",
+                             tty_, adapter.empty() ? "none" : adapter, *adapter_)};
+  }
+
   Error lost(const std::string& why) {
     line_.lost();
     return {ErrorCode::kUnplugged, fmt::format("{} is gone: {}", tty_, why)};
   }
 
   std::string tty_;
+  std::optional<std::string> adapter_;  ///< when the line was first opened
   Reconnecting<Line> line_;
 };
 

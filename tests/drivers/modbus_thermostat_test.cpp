@@ -168,6 +168,15 @@ TEST_F(ModbusThermostatTest, ALostReadIsRepeatedTwiceAndNoMore) {
   EXPECT_EQ(reading.error().message, "thermostat: reading registers 2 ... 3: no answer in 500 ms");
 }
 
+TEST_F(ModbusThermostatTest, AConnectionThatWasClosedIsUsedAgainAtOnce) {
+  const auto thermostat = opened();
+  const Error closed{ErrorCode::kUnplugged, "closed"};
+  far_.read_failures = {closed};
+  EXPECT_TRUE(thermostat->read());
+  far_.read_failures = {closed, closed, closed};
+  EXPECT_EQ(thermostat->read().error().code, ErrorCode::kUnplugged);
+}
+
 TEST_F(ModbusThermostatTest, AnExceptionAnswerIsNotRepeated) {
   const auto thermostat = opened();
   far_.read_failures = {{ErrorCode::kDevice, "Modbus exception 4"}};
