@@ -61,7 +61,7 @@ class BenchWatch {
   double time_s(Instant instant) const { return drivers::to_seconds(instant - power_on_); }
   double now_s() const { return time_s(now()); }
 
-  /// Whether the coils carry current: an instrument that is unplugged then interrupts.
+  /// Whether the coils' outputs are on: an instrument that is unplugged then interrupts.
   void guard_field(bool on) { field_guarded_ = on; }
   /// False while an instrument's readings are missing.
   bool all_answer() const;

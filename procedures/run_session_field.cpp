@@ -141,6 +141,7 @@ Status RunSession::energise() {
   const auto vertical = bench_.coil_vertical->enable();
   if (!vertical) return vertical;
   energised_ = true;
+  watch_.guard_field(true);
   horizontal_ = vertical_ = Ampere{0.0};
   return {};
 }
@@ -159,13 +160,10 @@ Status RunSession::set_currents(Ampere horizontal, Ampere vertical) {
     if (done) present = wanted;
     return done;
   };
-  auto done = set(config_.coil_horizontal, *bench_.coil_horizontal, horizontal, horizontal_,
-                  "coil_horizontal");
-  if (done) {
-    done = set(config_.coil_vertical, *bench_.coil_vertical, vertical, vertical_, "coil_vertical");
-  }
-  watch_.guard_field(horizontal_ != Ampere{} || vertical_ != Ampere{});
-  return done;
+  const auto done = set(config_.coil_horizontal, *bench_.coil_horizontal, horizontal, horizontal_,
+                        "coil_horizontal");
+  if (!done) return done;
+  return set(config_.coil_vertical, *bench_.coil_vertical, vertical, vertical_, "coil_vertical");
 }
 
 Status RunSession::switch_off() {
