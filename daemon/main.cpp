@@ -27,7 +27,6 @@ struct DaemonOptions {
   std::optional<std::uint64_t> seed;
   std::string store;
   Speed speed = Speed::kRealtime;
-  double clock_speed = 1.0;
   std::vector<std::string> procedures;
 };
 
@@ -41,9 +40,6 @@ void declare(CLI::App& app, DaemonOptions& options) {
                  "What the simulated gyro hides (default: clean)");
   add_seed_option(app, options.seed);
   add_speed_option(app, options.speed, "realtime");
-  app.add_option("--clock-speed", options.clock_speed,
-                 "Bench seconds in a second, of a bench that is served faster than real")
-      ->check(CLI::Range(1.0, 1000.0));
   app.footer(
       "A bench whose instruments have connections is reached through them; a prompt is answered "
       "on\n"
@@ -58,7 +54,6 @@ Status choose_bench(const DaemonOptions& options, Setup& setup) {
   const auto simulated = is_simulated(setup.bench);
   if (!simulated) return simulated.error();
   setup.simulated = *simulated;
-  setup.clock_speed = options.clock_speed;
   if (setup.simulated) return {};
   if (options.speed == Speed::kMaximum || options.seed ||
       options.setup.scenario != SetupOptions{}.scenario) {

@@ -142,7 +142,7 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
   std::unique_ptr<Session> session(new Session(std::move(setup), seed));
   const Setup& made = session->setup_;
   if (speed == Speed::kRealtime) {
-    session->clock_ = std::make_unique<drivers::SteadyClock>(made.clock_speed);
+    session->clock_ = std::make_unique<drivers::SteadyClock>();
   } else {
     // Starts today, so that the record's dates mean something; nothing measured depends on it.
     session->clock_ = std::make_unique<drivers::VirtualClock>(drivers::SteadyClock().wall_now());

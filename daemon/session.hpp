@@ -35,8 +35,6 @@ struct Setup {
   std::string scenario_json;  ///< empty on a real bench
   /// false: the instruments are reached where the bench's file says.
   bool simulated = true;
-  /// Bench seconds in a second: more than 1 only for a bench that is served faster than real.
-  double clock_speed = 1.0;
 };
 
 /// Errors: kBadInput.

@@ -48,5 +48,25 @@ TEST(Session, RecordsIntoWhatItsCallerKeeps) {
   EXPECT_EQ(record.headers.at(0).seed, 3U);
 }
 
+TEST(Session, ABenchIsSimulatedOrRealAsAWhole) {
+  const auto ready = tests::source_tree() / "config/benches";
+  auto simulated = config::load_bench(ready / "simulated.json");
+  auto real = config::load_bench(ready / "factory.json");
+  ASSERT_TRUE(simulated && real);
+  EXPECT_TRUE(*is_simulated(*simulated));
+  EXPECT_FALSE(*is_simulated(*real)) << "the turntable that is turned by hand does not count";
+
+  simulated->turntable.connection = "tty:/dev/ttyUSB0";
+  const auto mixed = is_simulated(*simulated);
+  ASSERT_FALSE(mixed);
+  EXPECT_EQ(mixed.error().code, ErrorCode::kBadInput);
+  EXPECT_NE(mixed.error().message.find("/turntable/connection is not; expected all"),
+            std::string::npos)
+      << mixed.error().message;
+  real->gyro.connection = "simulated";
+  EXPECT_NE(is_simulated(*real).error().message.find("/gyro/connection is \"simulated\""),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace fogbench::daemon

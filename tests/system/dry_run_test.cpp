@@ -114,12 +114,26 @@ TEST_F(DaemonTest, TouchesNothingWhenOneOfItsProceduresIsWrong) {
   EXPECT_EQ(folder_.entries(), 0U);
 }
 
-TEST_F(DaemonTest, RefusesABenchThatItCannotReach) {
+TEST_F(DaemonTest, ARealBenchWhoseInstrumentsAreNotThereEndsInOneLine) {
   const Finished done =
       support::run(command({"--bench", "factory", "--store", store(), "coil-sweep"}, "fogbenchd"));
-  EXPECT_EQ(done.status, 3) << done.err;
-  EXPECT_NE(done.err.find("/thermostat/connection"), std::string::npos) << done.err;
+  EXPECT_EQ(done.status, 4) << done.err;
+  EXPECT_NE(done.err.find("coil_horizontal: "), std::string::npos) << done.err;
   EXPECT_EQ(folder_.entries(), 0U);
+}
+
+TEST_F(DaemonTest, WhatIsOfTheSimulatedBenchIsRefusedOnARealOne) {
+  for (const std::vector<std::string>& option :
+       {std::vector<std::string>{"--seed", "1"}, {"--speed", "max"}, {"--scenario", "device-1"}}) {
+    std::vector<std::string> words{"--bench", "factory", "--store", store(), "coil-sweep"};
+    words.insert(words.end(), option.begin(), option.end());
+    const Finished done = support::run(command(words, "fogbenchd"));
+    EXPECT_EQ(done.status, 2) << done.err;
+    EXPECT_NE(done.err.find("are for the simulated bench; bench factory is a real one"),
+              std::string::npos)
+        << done.err;
+    EXPECT_EQ(folder_.entries(), 0U);
+  }
 }
 
 }  // namespace
