@@ -63,6 +63,9 @@ struct BenchLimits {
   Microtesla compensation_maximum{55.0};
   /// The control sensor farther than this from the working sensors' mean is a recorded warning.
   Celsius sensor_disagreement{1.0};
+  /// How long a run waits, coils at 0 A, for an instrument that was unplugged: time to find the
+  /// cable, and to plug it in again.
+  Seconds absence_maximum{120.0};
   Seconds run_time_maximum{172800.0};
 };
 

@@ -117,6 +117,8 @@ void describe(Visitor& v, BenchLimits& l) {
              at_least(0));
   v.optional("sensor_disagreement_c", l.sensor_disagreement,
              "A control sensor farther from the working ones is warned of.", above(0));
+  v.optional("absence_maximum_s", l.absence_maximum,
+             "How long a run waits for an instrument that was unplugged.", above(0));
   v.optional("run_time_maximum_s", l.run_time_maximum, "Longest run.", above(0));
 }
 

@@ -129,7 +129,7 @@ Status BenchWatch::note(Outage& outage, const Status& outcome) {
     if (!noted) return noted;
   }
   if (unplugged && field_guarded_) return outcome;
-  const config::Seconds longest = unplugged ? kLongestAbsence : kLongestOutage;
+  const config::Seconds longest = unplugged ? config_.limits.absence_maximum : kLongestOutage;
   if (now - *outage.since <= drivers::from_seconds(longest.count())) return {};
   // Nobody waits for it any longer, so this is no interruption any more.
   return Error{

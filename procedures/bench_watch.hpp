@@ -4,9 +4,9 @@
 //
 // A read that fails is harmless: it is warned of once, the value is missing, and the next second
 // tries again. An instrument that stays silent for longer than kLongestOutage ends the run, one
-// that is unplugged after kLongestAbsence; so does a temperature beyond the bench's limit. While
-// the coils carry current nobody may leave unnoticed: an instrument that is unplugged then
-// interrupts the step at once. A reading that repeats an old time stamp is stale and counts as
+// that is unplugged after the bench's absence_maximum; so does a temperature beyond the bench's
+// limit. While the coils carry current nobody may leave unnoticed: an instrument that is unplugged
+// then interrupts the step at once. A reading that repeats an old time stamp is stale and counts as
 // failed: it never enters an average.
 
 #include <array>
@@ -27,8 +27,6 @@ class BenchWatch {
   static constexpr drivers::Clock::Duration kPeriod = std::chrono::seconds{1};
   /// Longer than an instrument's restart, shorter than anything thermal.
   static constexpr config::Seconds kLongestOutage{30.0};
-  /// Time to find the cable, and to plug it in again.
-  static constexpr config::Seconds kLongestAbsence{120.0};
   /// How long the slow readings are kept: a window looks back to just before its start.
   static constexpr double kRecentS = 60.0;
   /// How far above its limit a temperature may overshoot.

@@ -187,10 +187,11 @@ Status RunEngine::Run::await_return(const std::string& reason) {
       const auto restored = session_.restore(plan_.steps[step_].block == 0);
       if (restored || restored.error().code != ErrorCode::kUnplugged) return restored;
     }
-    if (waited > BenchWatch::kLongestAbsence) {
-      return Error{ErrorCode::kDevice, fmt::format("still not back after {}: {}",
-                                                   duration_text(BenchWatch::kLongestAbsence),
-                                                   off ? reason : off.error().message)};
+    if (waited > engine_.config_.limits.absence_maximum) {
+      return Error{ErrorCode::kDevice,
+                   fmt::format("still not back after {}: {}",
+                               duration_text(engine_.config_.limits.absence_maximum),
+                               off ? reason : off.error().message)};
     }
   }
 }

@@ -113,6 +113,15 @@ TEST(Unplugged, OneThatStaysAwayFailsTheRunWithTheRestAtZero) {
   }
 }
 
+TEST(Unplugged, TheBenchSaysHowLongItIsWaitedFor) {
+  Rig rig;
+  rig.config.limits.absence_maximum = Seconds{6.0};
+  const Unplugged pulled(rig, "magnetometer", 1e9, [&] { return rig.log.points.size() == 2; });
+  const auto summary = rig.summary_of(short_sweep());
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kFailed);
+  EXPECT_LE(pulled.now_s() - pulled.pulled_at_s(), 11.0);
+}
+
 TEST(Unplugged, ThreeTimesInOneSweepFailsTheRun) {
   Rig rig;
   const Unplugged pulled(
