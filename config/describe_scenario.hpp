@@ -55,8 +55,18 @@ void describe(Visitor& v, FaultSpec& f) {
   v.required("device", f.device,
              "thermostat, coil_horizontal, coil_vertical, magnetometer, turntable or gyro.");
   v.required("kind", f.kind, "How it misbehaves.");
-  v.required("at_s", f.at, "From when on, since the start of the run.", at_least(0));
-  v.required("for_s", f.duration, "For how long.", at_least(0));
+  v.optional("at_s", f.at, "From when on, since the start of the run.", at_least(0));
+  v.optional("for_s", f.duration, "For how long.", at_least(0));
+  v.optional("at_operation", f.at_operation,
+             "Instead of at_s and for_s: the first operation of the instrument that it spoils, "
+             "counted from 1.",
+             at_least(1));
+  v.optional("for_operations", f.operations, "How many operations it spoils, from that one on.",
+             at_least(1));
+  v.optional("operation", f.operation,
+             "Spoil and count only the operations of this name: read, set_target, set_mode of a "
+             "thermostat; clear, identify, initialise, set, set_query, measure, error_query, "
+             "output_on, output_off of a supply or turntable; report; frame.");
 }
 
 template <class Visitor>

@@ -22,6 +22,18 @@ constexpr std::array<std::string_view, 6> kInstruments = {
 
 }  // namespace
 
+std::vector<std::string_view> operations_of(std::string_view device) {
+  if (device == "thermostat") return {"read", "set_target", "set_mode"};
+  if (device == "magnetometer") return {"report"};
+  if (device == "gyro") return {"frame"};
+  std::vector<std::string_view> names{"clear",     "identify", "initialise", "set",
+                                      "set_query", "measure",  "error_query"};
+  if (device == "turntable") return names;
+  if (device != "coil_horizontal" && device != "coil_vertical") return {};
+  names.insert(names.end(), {"output_on", "output_off"});
+  return names;
+}
+
 Result<NoiseCoefficients> noise_grade(const std::string& name) {
   std::string known;
   for (const Grade& grade : kGrades) {
@@ -57,8 +69,22 @@ bool check(const Place& at, const HiddenEffect& h) {
 }
 
 bool check(const Place& at, const FaultSpec& f) {
-  return std::find(kInstruments.begin(), kInstruments.end(), f.device) != kInstruments.end() ||
-         (at / "device").wrong(fmt::format("one of {}", fmt::join(kInstruments, ", ")));
+  if (std::find(kInstruments.begin(), kInstruments.end(), f.device) == kInstruments.end()) {
+    return (at / "device").wrong(fmt::format("one of {}", fmt::join(kInstruments, ", ")));
+  }
+  const auto operations = operations_of(f.device);
+  if (!f.operation.empty() &&
+      std::find(operations.begin(), operations.end(), f.operation) == operations.end()) {
+    return (at / "operation").wrong(fmt::format("one of {}", fmt::join(operations, ", ")));
+  }
+  const bool counted = (at / "at_operation").present();
+  const bool timed = (at / "at_s").present();
+  if (counted == timed) return at.fail("expected either at_s and for_s, or at_operation");
+  if (timed != (at / "for_s").present()) {
+    return at.fail(timed ? "has at_s, but not for_s" : "has for_s, which goes with at_s");
+  }
+  return counted || !(at / "for_operations").present() ||
+         at.fail("has for_operations, which goes with at_operation");
 }
 
 bool check(const Place& at, const ScenarioConfig& s) {

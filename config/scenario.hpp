@@ -2,9 +2,12 @@
 // What the simulated gyro hides and which instruments fail when (config/scenarios/*.json).
 // Effect identifiers and their inner parameters are those of `fogbench effects`.
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/result.hpp"
@@ -46,14 +49,24 @@ enum class FaultKind {
   kSlowAnswer
 };
 
-/// An instrument's misbehaviour: from `at` on, for `duration`.
+/// An instrument's misbehaviour: from `at` on, for `duration`; or in the operations `at_operation`
+/// ... `at_operation + operations - 1` of that instrument, counted from 1, whenever they come.
+/// An operation is one request with its answer, one report, one frame.
 struct FaultSpec {
   std::string
       device;  ///< thermostat, coil_horizontal, coil_vertical, magnetometer, turntable, gyro
   FaultKind kind = FaultKind::kTimeout;
   Seconds at{0.0};
   Seconds duration{0.0};
+  std::optional<std::uint32_t> at_operation;
+  std::uint32_t operations = 1;
+  /// Only operations of this name (operations_of) are spoilt and counted; empty: all.
+  std::string operation;
 };
+
+/// The names of an instrument's operations, in the order of its description; empty when there is no
+/// such instrument.
+std::vector<std::string_view> operations_of(std::string_view device);
 
 /// A change of the shield's state between tests: all magnetic terms are multiplied by `factor`
 /// from `at` on (the common scale of device 2 of the published table).

@@ -31,15 +31,28 @@ Result<FaultSchedule> FaultSchedule::create(const std::vector<config::FaultSpec>
                    fmt::format("scenario: /faults/{}: {} cannot have the fault {}; it can:{}", i,
                                device, name_of(faults[i].kind), known)};
     }
-    schedule.faults_.push_back(faults[i]);
+    schedule.faults_.push_back({faults[i]});
+    // Before its first operation an instrument is in none.
+    schedule.faults_.back().applies = faults[i].operation.empty();
   }
   return schedule;
 }
 
+void FaultSchedule::begin(std::string_view operation) {
+  for (Fault& fault : faults_) {
+    fault.applies = fault.spec.operation.empty() || fault.spec.operation == operation;
+    if (fault.applies) ++fault.seen;
+  }
+}
+
 bool FaultSchedule::active(FaultKind kind, double time_s) const {
-  return std::any_of(faults_.begin(), faults_.end(), [&](const config::FaultSpec& fault) {
-    return fault.kind == kind && time_s >= fault.at.count() &&
-           time_s < (fault.at + fault.duration).count();
+  return std::any_of(faults_.begin(), faults_.end(), [&](const Fault& fault) {
+    const config::FaultSpec& spec = fault.spec;
+    if (spec.kind != kind || !fault.applies) return false;
+    if (spec.at_operation) {
+      return fault.seen >= *spec.at_operation && fault.seen - *spec.at_operation < spec.operations;
+    }
+    return time_s >= spec.at.count() && time_s < (spec.at + spec.duration).count();
   });
 }
 

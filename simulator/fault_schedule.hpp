@@ -1,8 +1,10 @@
 #pragma once
-// When one instrument misbehaves, and how.
+// When one instrument misbehaves, and how: at a time, or in the n-th of its operations.
 
+#include <cstdint>
 #include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/result.hpp"
@@ -20,11 +22,19 @@ class FaultSchedule {
                                       const std::string& device,
                                       std::initializer_list<FaultKind> possible);
 
+  /// The instrument's next operation begins: one of config::operations_of(device).
+  void begin(std::string_view operation);
+  /// In the present operation, at that time since power-on.
   bool active(FaultKind kind, double time_s) const;
   bool empty() const { return faults_.empty(); }
 
  private:
-  std::vector<config::FaultSpec> faults_;
+  struct Fault {
+    config::FaultSpec spec;
+    std::uint32_t seen = 0;  ///< operations of its name, the present one included
+    bool applies = true;     ///< to the present operation, by its name
+  };
+  std::vector<Fault> faults_;
 };
 
 }  // namespace fogbench::simulator

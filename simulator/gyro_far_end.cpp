@@ -12,6 +12,9 @@ using config::NumberType;
 
 namespace {
 
+/// Just under the second of silence after which a stream counts as dead.
+constexpr double kSlowAnswerS = 0.9;
+
 /// The gyro stands on a table with X up: it weighs 1 g along it. Everything else reads 0.
 double resting_value(const std::string& name) {
   return name == "acceleration_x" ? 1.0 : 0.0;
@@ -31,8 +34,6 @@ GyroFarEnd::GyroFarEnd(const config::FrameDevice& device, const config::NoiseCoe
       crc_(device.crc),
       garbage_(derive_seed(seed, "gyro garbage")),
       template_(frame_bytes_),
-      partial_(frame_bytes_),
-      partial_sent_(frame_bytes_),
       last_rate_(drivers::byte_count(device.rate.type)) {
   std::copy(device_.header.begin(), device_.header.end(), template_.begin());
   template_[device_.status_offset_bytes] = device_.status_valid_mask;
@@ -44,29 +45,63 @@ GyroFarEnd::GyroFarEnd(const config::FrameDevice& device, const config::NoiseCoe
 
 Result<std::size_t> GyroFarEnd::read_some(std::span<std::byte> out) {
   plant_->advance();
-  if (faults_.active(FaultKind::kUnplug, plant_->now_s())) {
-    return Error{ErrorCode::kUnplugged, "gyro: unplugged"};
-  }
   auto* const begin = reinterpret_cast<std::uint8_t*>(out.data());
   std::uint8_t* to = begin;
   std::uint8_t* const end = begin + out.size();
   const std::int64_t complete = complete_frames();
   skip_lost();
-  while (to != end) {
-    if (partial_sent_ < frame_bytes_) {
-      const std::size_t count =
-          std::min(frame_bytes_ - partial_sent_, static_cast<std::size_t>(end - to));
-      to = std::copy_n(partial_.data() + partial_sent_, count, to);
-      partial_sent_ += count;
-    } else if (next_ >= complete) {
-      break;
-    } else if (static_cast<std::size_t>(end - to) >= frame_bytes_) {
-      if (make_frame(to)) to += frame_bytes_;
-    } else if (make_frame(partial_.data())) {
-      partial_sent_ = 0;
+  const bool has_faults = !faults_.empty();
+  if (has_faults) {
+    make_with_faults(complete);
+    if (faults_.active(FaultKind::kUnplug, plant_->now_s())) {
+      return Error{ErrorCode::kUnplugged, "gyro: unplugged"};
     }
   }
+  while (to != end) {
+    if (pending_sent_ < pending_arrived_) {
+      const std::size_t count =
+          std::min(pending_arrived_ - pending_sent_, static_cast<std::size_t>(end - to));
+      to = std::copy_n(pending_.data() + pending_sent_, count, to);
+      pending_sent_ += count;
+    } else if (has_faults || next_ >= complete) {
+      break;
+    } else if (static_cast<std::size_t>(end - to) >= frame_bytes_) {
+      make_frame(to);
+      to += frame_bytes_;
+    } else {
+      pending_.resize(frame_bytes_);
+      make_frame(pending_.data());
+      pending_arrived_ = frame_bytes_;
+      pending_sent_ = 0;
+    }
+  }
+  if (pending_sent_ == pending_.size()) {
+    pending_.clear();
+    pending_sent_ = pending_arrived_ = 0;
+  }
   return static_cast<std::size_t>(to - begin);
+}
+
+void GyroFarEnd::make_with_faults(std::int64_t complete) {
+  while (next_ < complete) {
+    const double time_s = static_cast<double>(next_) * frame_s_;
+    faults_.begin("frame");
+    const bool slow = faults_.active(FaultKind::kSlowAnswer, time_s);
+    const bool held_back = slow || faults_.active(FaultKind::kLateAnswer, time_s);
+    if (!held_back) {
+      held_back_since_s_.reset();
+    } else if (!held_back_since_s_) {
+      held_back_since_s_ = time_s;
+    }
+    const std::size_t start = pending_.size();
+    pending_.resize(start + frame_bytes_);
+    make_frame(pending_.data() + start);
+    if (!spoil(pending_.data() + start, time_s)) pending_.resize(start);
+    if (!held_back || (slow && time_s - *held_back_since_s_ >= kSlowAnswerS)) {
+      pending_arrived_ = pending_.size();
+      held_back_since_s_.reset();
+    }
+  }
 }
 
 Status GyroFarEnd::write(std::span<const std::byte>) {
@@ -100,7 +135,7 @@ void GyroFarEnd::enter_step(std::int64_t step) {
   plant_->forget_before(step);
 }
 
-bool GyroFarEnd::make_frame(std::uint8_t* out) {
+void GyroFarEnd::make_frame(std::uint8_t* out) {
   if (next_ >= step_end_) {
     const double middle_s = (static_cast<double>(next_) + 0.5) * frame_s_;
     enter_step(static_cast<std::int64_t>(middle_s / plant_->step_s()));
@@ -112,14 +147,9 @@ bool GyroFarEnd::make_frame(std::uint8_t* out) {
   if (!drivers::write_field(device_.rate, device_.byte_order, rate, frame)) {
     out[device_.status_offset_bytes] = 0;  // Over range: the gyro says that it is not valid.
   }
-  const double time_s = static_cast<double>(next_) * frame_s_;
   ++next_;
   sequence_ = sequence_ + 1 == device_.sequence_modulus ? 0 : sequence_ + 1;
-  if (faults_.empty()) {
-    crc_.store(out);
-    return true;
-  }
-  return spoil(out, time_s);
+  crc_.store(out);
 }
 
 bool GyroFarEnd::spoil(std::uint8_t* frame, double time_s) {
@@ -131,6 +161,7 @@ bool GyroFarEnd::spoil(std::uint8_t* frame, double time_s) {
   } else {
     std::memcpy(last_rate_.data(), rate, last_rate_.size());
   }
+  if (active(FaultKind::kException)) frame[device_.status_offset_bytes] = 0;
   if (active(FaultKind::kNan)) {
     if (device_.rate.type == NumberType::kFloat32) {
       drivers::store_bytes(rate, sizeof(float), device_.byte_order, 0x7FC00000U);

@@ -6,12 +6,14 @@
 //
 // quantised, and goes out when the sample ends. The effects are those of the plant's step that the
 // middle of the sample lies in. Bytes come into being when they are read, up to the
-// clock's present; nothing is stored but the frame that a read stopped in. Frames older than
-// Plant::kKeptS that nobody read are lost, as in a receive buffer that runs over.
+// clock's present; nothing is stored but the frame that a read stopped in. A line that stalls (late
+// and slow answers) keeps its frames and brings them together. Frames older than Plant::kKeptS that
+// nobody read are lost, as in a receive buffer that runs over.
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,8 +29,9 @@ namespace fogbench::simulator {
 class GyroFarEnd final : public drivers::SerialTransport {
  public:
   static constexpr std::initializer_list<FaultKind> kFaults = {
-      FaultKind::kTimeout, FaultKind::kUnplug, FaultKind::kBadChecksum, FaultKind::kBadSequence,
-      FaultKind::kGarbage, FaultKind::kNan,    FaultKind::kStuck};
+      FaultKind::kTimeout, FaultKind::kLateAnswer, FaultKind::kBadChecksum, FaultKind::kBadSequence,
+      FaultKind::kGarbage, FaultKind::kNan,        FaultKind::kStuck,       FaultKind::kException,
+      FaultKind::kUnplug,  FaultKind::kSlowAnswer};
 
   GyroFarEnd(const config::FrameDevice& device, const config::NoiseCoefficients& noise,
              std::shared_ptr<Plant> plant, FaultSchedule faults, std::uint64_t seed);
@@ -40,9 +43,12 @@ class GyroFarEnd final : public drivers::SerialTransport {
  private:
   /// Frames complete by now.
   std::int64_t complete_frames() const;
-  /// Draws frame next_ and writes it to `out`; false when a fault keeps it off the line.
-  bool make_frame(std::uint8_t* out);
+  /// Draws frame next_ and writes it to `out`.
+  void make_frame(std::uint8_t* out);
+  /// False when a fault keeps the frame off the line.
   bool spoil(std::uint8_t* frame, double time_s);
+  /// Puts every frame up to `complete` into pending_, faults and all.
+  void make_with_faults(std::int64_t complete);
   void enter_step(std::int64_t step);
   void skip_lost();
 
@@ -59,9 +65,12 @@ class GyroFarEnd final : public drivers::SerialTransport {
   std::int64_t next_ = 0;               ///< the frame to be made
   std::uint32_t sequence_ = 0;
   double step_rate_deg_per_h_ = 0.0;
-  std::int64_t step_end_ = 0;          ///< first frame beyond the present step
-  std::vector<std::uint8_t> partial_;  ///< a frame that a read stopped in
-  std::size_t partial_sent_ = 0;
+  std::int64_t step_end_ = 0;  ///< first frame beyond the present step
+  /// A frame that a read stopped in; with faults, all that has not been read.
+  std::vector<std::uint8_t> pending_;
+  std::size_t pending_sent_ = 0;
+  std::size_t pending_arrived_ = 0;  ///< the rest is held back
+  std::optional<double> held_back_since_s_;
   std::vector<std::uint8_t> last_rate_;  ///< as it last went out, for a stuck gyro
   std::uint8_t last_sequence_ = 0;       ///< likewise, for one that repeats
 };

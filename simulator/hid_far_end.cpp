@@ -44,11 +44,7 @@ double modulus_of(NumberType type) {
 
 HidFarEnd::HidFarEnd(const config::HidDevice& device, const config::MagneticPlant& plant,
                      InstrumentLine line, std::uint64_t seed)
-    : device_(device),
-      plant_config_(plant),
-      line_(std::move(line)),
-      seed_(seed),
-      last_report_(device.report_bytes) {}
+    : device_(device), plant_config_(plant), line_(std::move(line)), seed_(seed) {}
 
 std::int64_t HidFarEnd::newest() const {
   return static_cast<std::int64_t>(
@@ -57,14 +53,17 @@ std::int64_t HidFarEnd::newest() const {
 
 Result<std::size_t> HidFarEnd::read_report(std::span<std::uint8_t> out,
                                            drivers::Clock::Duration timeout) {
+  line_.begin("report");
   if (line_.fault(FaultKind::kUnplug)) return line_.error(ErrorCode::kUnplugged, "unplugged");
   if (out.size() < device_.report_bytes) {
     return line_.error(ErrorCode::kProtocol, fmt::format("a report has {} bytes, room for {}",
                                                          device_.report_bytes, out.size()));
   }
-  const drivers::Clock::Instant deadline = line_.clock().now() + timeout;
-  if (line_.fault(FaultKind::kTimeout)) {
-    line_.clock().sleep_until(deadline);
+  const bool in_vain = line_.fault(FaultKind::kTimeout) || line_.fault(FaultKind::kLateAnswer);
+  if (in_vain) {
+    line_.clock().sleep_for(timeout);
+  } else if (line_.fault(FaultKind::kSlowAnswer)) {
+    line_.clock().sleep_for(timeout * 9 / 10);
   } else if (newest() <= last_read_) {
     const double next_s = static_cast<double>(last_read_ + 1) * device_.report_period.count();
     const auto wait = drivers::from_seconds(next_s - line_.plant().now_s());
@@ -72,17 +71,13 @@ Result<std::size_t> HidFarEnd::read_report(std::span<std::uint8_t> out,
   }
   line_.plant().advance();
   const std::int64_t number = newest();
-  if (number <= last_read_ || line_.fault(FaultKind::kTimeout)) {
-    return line_.error(ErrorCode::kTimeout, "no report");
-  }
+  if (number <= last_read_ || in_vain) return line_.error(ErrorCode::kTimeout, "no report");
   last_read_ = number;
-  if (!line_.fault(FaultKind::kStuck)) encode(number, last_report_);
-  std::copy(last_report_.begin(), last_report_.end(), out.begin());
-  return last_report_.size();
+  encode(number, out.first(device_.report_bytes));
+  return device_.report_bytes;
 }
 
-void HidFarEnd::encode(std::int64_t number, std::span<std::uint8_t> report) {
-  std::fill(report.begin(), report.end(), std::uint8_t{0});
+Vector3 HidFarEnd::measure(std::int64_t number) {
   // A generator of each report's own: what one report shows does not depend on which were read.
   NormalSource noise(derive_seed(seed_, static_cast<std::uint64_t>(number)));
   const Vector3 field = line_.plant().field_ut();
@@ -95,12 +90,21 @@ void HidFarEnd::encode(std::int64_t number, std::span<std::uint8_t> report) {
     }
     if (range > 0.0) reported[i] = std::clamp(reported[i], -range, range);
   }
+  if (!line_.fault(FaultKind::kStuck) || !last_measured_) last_measured_ = reported;
+  return *last_measured_;
+}
+
+void HidFarEnd::encode(std::int64_t number, std::span<std::uint8_t> report) {
+  std::fill(report.begin(), report.end(), std::uint8_t{0});
+  const Vector3 reported = measure(number);
   const bool wrong_count = line_.fault(FaultKind::kBadSequence);
   for (const FieldSpec& spec : device_.fields) {
     double value = spec.offset;
     if (spec.name == "sequence") {
       const double count = static_cast<double>(wrong_count ? number / 2 : number);
       value += spec.scale * std::fmod(count, modulus_of(spec.type));
+    } else if (spec.name == "status" && line_.fault(FaultKind::kException)) {
+      value += spec.scale;
     } else if (is_field(spec)) {
       value = reported[static_cast<std::size_t>(spec.name.back() - 'x') % 3];
     }

@@ -4,6 +4,7 @@
 // matrix * true field (gyro axes) + offset + noise, limited to the range.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "config/bench.hpp"
@@ -15,8 +16,9 @@ namespace fogbench::simulator {
 class HidFarEnd final : public drivers::HidTransport {
  public:
   static constexpr std::initializer_list<FaultKind> kFaults = {
-      FaultKind::kTimeout, FaultKind::kBadSequence, FaultKind::kGarbage,
-      FaultKind::kNan,     FaultKind::kStuck,       FaultKind::kUnplug};
+      FaultKind::kTimeout,   FaultKind::kLateAnswer, FaultKind::kBadSequence,
+      FaultKind::kGarbage,   FaultKind::kNan,        FaultKind::kStuck,
+      FaultKind::kException, FaultKind::kUnplug,     FaultKind::kSlowAnswer};
 
   HidFarEnd(const config::HidDevice& device, const config::MagneticPlant& plant,
             InstrumentLine line, std::uint64_t seed);
@@ -29,6 +31,8 @@ class HidFarEnd final : public drivers::HidTransport {
  private:
   /// Number of the newest report that exists; 0 is none.
   std::int64_t newest() const;
+  /// What the sensor says of the true field.
+  Vector3 measure(std::int64_t number);
   void encode(std::int64_t number, std::span<std::uint8_t> report);
 
   const config::HidDevice device_;
@@ -36,7 +40,7 @@ class HidFarEnd final : public drivers::HidTransport {
   InstrumentLine line_;
   const std::uint64_t seed_;
   std::int64_t last_read_ = 0;
-  std::vector<std::uint8_t> last_report_;
+  std::optional<Vector3> last_measured_;  ///< what a stuck sensor says again
 };
 
 }  // namespace fogbench::simulator

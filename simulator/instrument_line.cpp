@@ -22,6 +22,9 @@ Status InstrumentLine::answer() {
   if (fault(FaultKind::kBadChecksum)) {
     return error(ErrorCode::kProtocol, "the answer's check value is wrong");
   }
+  if (fault(FaultKind::kBadSequence)) {
+    return error(ErrorCode::kProtocol, "the answer is to another request");
+  }
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "config/result.hpp"
 #include "drivers/clock.hpp"
@@ -24,6 +25,9 @@ class InstrumentLine {
         faults_(std::move(faults)),
         random_(seed) {}
 
+  /// The instrument's next operation, one of config::operations_of: what the faults of the calls
+  /// below are looked up for.
+  void begin(std::string_view operation) { faults_.begin(operation); }
   /// The request travels for `takes` (twenty times as long while slow, but not past `timeout`).
   /// On success the instrument executes it, on the plant of that moment. kUnplugged while
   /// unplugged, kTimeout after `timeout` while the instrument hears nothing.

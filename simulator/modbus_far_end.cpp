@@ -65,7 +65,14 @@ Status ModbusFarEnd::check_count(std::size_t count) const {
   return {};
 }
 
+std::string_view ModbusFarEnd::write_operation(std::uint16_t address) const {
+  const auto found = by_address_.find(address);
+  const std::string_view name = found == by_address_.end() ? "" : found->second->name;
+  return name == "target" ? "set_target" : name == "mode" ? "set_mode" : "";
+}
+
 Status ModbusFarEnd::read_registers(std::uint16_t address, std::span<std::uint16_t> out) {
+  line_.begin("read");
   if (Status s = line_.request(kTransaction, kTimeout); !s) return s;
   if (Status s = check_count(out.size()); !s) return s;
   for (std::size_t i = 0; i < out.size();) {
@@ -81,6 +88,7 @@ Status ModbusFarEnd::read_registers(std::uint16_t address, std::span<std::uint16
 }
 
 Status ModbusFarEnd::write_registers(std::uint16_t address, std::span<const std::uint16_t> values) {
+  line_.begin(write_operation(address));
   if (Status s = line_.request(kTransaction, kTimeout); !s) return s;
   if (Status s = check_count(values.size()); !s) return s;
   for (std::size_t i = 0; i < values.size();) {

@@ -20,10 +20,10 @@ namespace fogbench::simulator {
 class ModbusFarEnd final : public drivers::ModbusTransport {
  public:
   static constexpr std::initializer_list<FaultKind> kFaults = {
-      FaultKind::kTimeout,     FaultKind::kLateAnswer, FaultKind::kSilentExecution,
-      FaultKind::kBadChecksum, FaultKind::kGarbage,    FaultKind::kNan,
-      FaultKind::kStuck,       FaultKind::kException,  FaultKind::kUnplug,
-      FaultKind::kSlowAnswer};
+      FaultKind::kTimeout,     FaultKind::kLateAnswer,  FaultKind::kSilentExecution,
+      FaultKind::kBadChecksum, FaultKind::kBadSequence, FaultKind::kGarbage,
+      FaultKind::kNan,         FaultKind::kStuck,       FaultKind::kException,
+      FaultKind::kUnplug,      FaultKind::kSlowAnswer};
 
   ModbusFarEnd(const config::ModbusDevice& device, InstrumentLine line);
 
@@ -31,6 +31,8 @@ class ModbusFarEnd final : public drivers::ModbusTransport {
   Status write_registers(std::uint16_t address, std::span<const std::uint16_t> values) override;
 
  private:
+  /// What the scenario calls a write to that address.
+  std::string_view write_operation(std::uint16_t address) const;
   Status check_count(std::size_t count) const;
   Error exception(int code) const;
   double value_of(const config::RegisterSpec& spec) const;

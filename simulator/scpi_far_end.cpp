@@ -34,6 +34,11 @@ bool same(std::string_view command, const std::string& wanted) {
   return !wanted.empty() && command == upper(wanted);
 }
 
+bool is_one_of(std::string_view command, const std::vector<std::string>& all) {
+  return std::any_of(all.begin(), all.end(),
+                     [&](const std::string& known) { return same(command, known); });
+}
+
 /// "CURR" of "CURR {value}".
 std::string header_of(const std::string& set_template) {
   return upper(trim(set_template.substr(0, set_template.find(kValue))));
@@ -45,7 +50,20 @@ ScpiFarEnd::ScpiFarEnd(const config::ScpiDevice& device, std::unique_ptr<ScpiOut
                        InstrumentLine line)
     : device_(device), output_(std::move(output)), line_(std::move(line)) {}
 
+std::string_view ScpiFarEnd::operation_of(std::string_view message) const {
+  const std::string command = upper(trim(message));
+  if (same(command, device_.error_query)) return "error_query";
+  if (command == "*IDN?") return "identify";
+  if (same(command, device_.set_query)) return "set_query";
+  if (same(command, device_.measure_query)) return "measure";
+  if (same(command, device_.output_on)) return "output_on";
+  if (same(command, device_.output_off)) return "output_off";
+  if (is_one_of(command, device_.initialise)) return "initialise";
+  return command.substr(0, command.find_first_of(" \t")) == header_of(device_.set) ? "set" : "";
+}
+
 Status ScpiFarEnd::write(std::string_view message) {
+  line_.begin(operation_of(message));
   if (Status s = line_.request(kMessage, kWriteTimeout); !s) return s;
   if (answer_) fail(-410, "Query INTERRUPTED");
   answer_.reset();
@@ -65,9 +83,6 @@ void ScpiFarEnd::execute(std::string_view text) {
   if (command == "*CLS") return errors_.clear();
   if (line_.fault(FaultKind::kException)) return fail(-200, "Execution error");
 
-  const bool initialises =
-      std::any_of(device_.initialise.begin(), device_.initialise.end(),
-                  [&](const std::string& known) { return same(command, known); });
   const std::string header = command.substr(0, command.find_first_of(" \t"));
   const std::string argument(trim(std::string_view(command).substr(header.size())));
   if (command == "*IDN?") {
@@ -75,16 +90,16 @@ void ScpiFarEnd::execute(std::string_view text) {
   } else if (command == "*RST") {
     output_->switch_output(line_.plant(), false);
   } else if (same(command, device_.set_query)) {
-    answer(fmt::format("{:.6E}", output_->setpoint()));
+    answer(number(output_->setpoint(), last_setpoint_));
   } else if (same(command, device_.measure_query)) {
-    answer(measure());
+    answer(number(output_->measure(line_.plant()), last_measurement_));
   } else if (same(command, device_.output_on)) {
     output_->switch_output(line_.plant(), true);
   } else if (same(command, device_.output_off)) {
     output_->switch_output(line_.plant(), false);
   } else if (header == header_of(device_.set)) {
     set(argument);
-  } else if (!initialises) {
+  } else if (!is_one_of(command, device_.initialise)) {
     fail(-113, "Undefined header");
   }
 }
@@ -104,13 +119,11 @@ void ScpiFarEnd::set(std::string_view argument) {
   output_->set(line_.plant(), value);
 }
 
-std::string ScpiFarEnd::measure() {
+std::string ScpiFarEnd::number(double value, std::optional<std::string>& last) {
   constexpr const char* kNotANumber = "9.91E37";  // SCPI-99, 7.2.1.5
   if (line_.fault(FaultKind::kNan)) return kNotANumber;
-  if (!line_.fault(FaultKind::kStuck) || !last_measurement_) {
-    last_measurement_ = fmt::format("{:.6E}", output_->measure(line_.plant()));
-  }
-  return *last_measurement_;
+  if (!line_.fault(FaultKind::kStuck) || !last) last = fmt::format("{:.6E}", value);
+  return *last;
 }
 
 void ScpiFarEnd::answer(std::string text) {
@@ -154,6 +167,7 @@ Result<std::string> ScpiFarEnd::read(drivers::Clock::Duration timeout) {
 }
 
 Status ScpiFarEnd::clear() {
+  line_.begin("clear");
   if (Status s = line_.request(kMessage, kWriteTimeout); !s) return s;
   answer_.reset();
   return {};

@@ -40,9 +40,10 @@ std::unique_ptr<ScpiOutput> make_turntable_output();
 class ScpiFarEnd final : public drivers::MessageTransport {
  public:
   static constexpr std::initializer_list<FaultKind> kFaults = {
-      FaultKind::kTimeout,   FaultKind::kLateAnswer, FaultKind::kSilentExecution,
-      FaultKind::kGarbage,   FaultKind::kNan,        FaultKind::kStuck,
-      FaultKind::kException, FaultKind::kUnplug,     FaultKind::kSlowAnswer};
+      FaultKind::kTimeout,     FaultKind::kLateAnswer, FaultKind::kSilentExecution,
+      FaultKind::kBadSequence, FaultKind::kGarbage,    FaultKind::kNan,
+      FaultKind::kStuck,       FaultKind::kException,  FaultKind::kUnplug,
+      FaultKind::kSlowAnswer};
 
   ScpiFarEnd(const config::ScpiDevice& device, std::unique_ptr<ScpiOutput> output,
              InstrumentLine line);
@@ -52,11 +53,15 @@ class ScpiFarEnd final : public drivers::MessageTransport {
   Status clear() override;
 
  private:
+  /// What the scenario calls this message; a message and the reading of its answer are one
+  /// operation.
+  std::string_view operation_of(std::string_view message) const;
   void execute(std::string_view command);
   void answer(std::string text);
   void set(std::string_view argument);
   void fail(int number, const char* meaning);
-  std::string measure();
+  /// A number as the instrument writes it; `last` is what a stuck one says again.
+  std::string number(double value, std::optional<std::string>& last);
   std::string next_error();
 
   const config::ScpiDevice device_;
@@ -64,7 +69,7 @@ class ScpiFarEnd final : public drivers::MessageTransport {
   InstrumentLine line_;
   std::deque<std::string> errors_;
   std::optional<std::string> answer_;
-  std::optional<std::string> last_measurement_;
+  std::optional<std::string> last_setpoint_, last_measurement_;
 };
 
 }  // namespace fogbench::simulator

@@ -31,7 +31,9 @@ TEST(LoadScenario, ReadsEveryPart) {
     "gyro": {"terms": {"bias": 0.7, "magnetic_linear_z": -0.25}},
     "hidden": [{"effect": "warm_up", "amplitude": 0.5, "tau": 900}],
     "magnetic_scale": [{"at_s": 10, "factor": 0.64}, {"at_s": 20, "factor": 1}],
-    "faults": [{"device": "magnetometer", "at_s": 5400, "kind": "timeout", "for_s": 20}],
+    "faults": [{"device": "magnetometer", "at_s": 5400, "kind": "timeout", "for_s": 20},
+               {"device": "coil_vertical", "operation": "set", "kind": "silent_execution",
+                "at_operation": 3, "for_operations": 2}],
     "reference_temperature_c": 25})"));
   ASSERT_TRUE(scenario) << scenario.error().message;
   EXPECT_EQ(scenario->noise.angle_random_walk_deg_per_sqrt_h, 0.002);
@@ -42,6 +44,10 @@ TEST(LoadScenario, ReadsEveryPart) {
   EXPECT_EQ(scenario->faults.at(0).kind, FaultKind::kTimeout);
   EXPECT_EQ(scenario->faults.at(0).at, Seconds{5400});
   EXPECT_EQ(scenario->faults.at(0).duration, Seconds{20});
+  EXPECT_FALSE(scenario->faults.at(0).at_operation);
+  EXPECT_EQ(scenario->faults.at(1).at_operation, 3U);
+  EXPECT_EQ(scenario->faults.at(1).operations, 2U);
+  EXPECT_EQ(scenario->faults.at(1).operation, "set");
   EXPECT_EQ(scenario->reference_temperature, Celsius{25});
 }
 
@@ -68,6 +74,20 @@ TEST(LoadScenario, MistakesAreNamed) {
       HasSubstr("/faults/0/device: found \"coil\", expected one of thermostat, coil_horizontal"));
   EXPECT_THAT(message(R"({"faults": [{"device": "gyro", "at_s": 0, "kind": "dead", "for_s": 1}]})"),
               HasSubstr("/faults/0/kind: found \"dead\", expected one of \"timeout\""));
+  const auto of_fault = [](const std::string& keys) {
+    return message(R"({"faults": [{"device": "gyro", "kind": "nan", )" + keys + "}]}");
+  };
+  EXPECT_THAT(of_fault(R"("operation": "read", "at_operation": 1)"),
+              HasSubstr("/faults/0/operation: found \"read\", expected one of frame"));
+  EXPECT_THAT(of_fault(R"("at_operation": 0)"), HasSubstr("/faults/0/at_operation: found 0"));
+  for (const char* keys : {R"("at_s": 0, "for_s": 1, "at_operation": 1)", R"("for_operations": 1)"})
+    EXPECT_THAT(of_fault(keys),
+                HasSubstr("/faults/0: expected either at_s and for_s, or at_operation"));
+  EXPECT_THAT(of_fault(R"("at_s": 0)"), HasSubstr("/faults/0: has at_s, but not for_s"));
+  EXPECT_THAT(of_fault(R"("at_operation": 1, "for_s": 1)"),
+              HasSubstr("/faults/0: has for_s, which goes with at_s"));
+  EXPECT_THAT(of_fault(R"("at_s": 0, "for_s": 1, "for_operations": 2)"),
+              HasSubstr("/faults/0: has for_operations, which goes with at_operation"));
   EXPECT_THAT(
       message(R"({"magnetic_scale": [{"at_s": 9, "factor": 1}, {"at_s": 9, "factor": 2}]})"),
       HasSubstr("/magnetic_scale/1/at_s: found 9, expected a time after 9 s"));

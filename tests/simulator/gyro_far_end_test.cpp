@@ -34,6 +34,7 @@ struct Frame {
   int sequence;
   int temperature_c;
   bool crc_holds;
+  int status;
 };
 
 std::vector<Frame> frames_of(const Bytes& bytes) {
@@ -44,7 +45,7 @@ std::vector<Frame> frames_of(const Bytes& bytes) {
     const std::uint8_t* frame = bytes.data() + i;
     const std::uint32_t bits = drivers::load_bytes(frame + 4, 4, config::ByteOrder::kBigEndian);
     frames.push_back({static_cast<double>(std::bit_cast<float>(bits)) * 3600.0, frame[29],
-                      frame[30] << 8U | frame[31], crc.holds(frame)});
+                      frame[30] << 8U | frame[31], crc.holds(frame), frame[28]});
   }
   return frames;
 }
@@ -182,6 +183,41 @@ TEST(GyroFarEnd, FailsInTheWaysOfTheScenarioWithoutTouchingOtherFrames) {
   EXPECT_EQ(stuck[509].rate_deg_per_h, expected[499].rate_deg_per_h);
   EXPECT_EQ(stuck[509].sequence, 509 % 128);
   EXPECT_NE(stuck[510].rate_deg_per_h, expected[499].rate_deg_per_h);
+  EXPECT_EQ(with(FaultKind::kException)[505].status, 0);
+}
+
+/// How many frames have come by each half second, from 5 s to 8 s.
+std::vector<std::size_t> arrivals(const config::FaultSpec& spec) {
+  config::ScenarioConfig scenario;
+  scenario.faults = {spec};
+  TestFarEnds bench(test_bench(), scenario);
+  bench.run_for(5.0);
+  std::size_t total = read_all(bench).size() / 36;
+  std::vector<std::size_t> counts{total};
+  for (int i = 0; i < 6; ++i) {
+    bench.run_for(0.5);
+    total += read_all(bench).size() / 36;
+    counts.push_back(total);
+  }
+  return counts;
+}
+
+TEST(GyroFarEnd, ALineThatStallsBringsItsFramesTogetherAndLosesNone) {
+  using Counts = std::vector<std::size_t>;
+  EXPECT_EQ(arrivals(fault("gyro", FaultKind::kLateAnswer, 5.2, 2.0)),
+            (Counts{500, 520, 520, 520, 520, 750, 800}));
+  EXPECT_EQ(arrivals(fault("gyro", FaultKind::kSlowAnswer, 5.2, 2.0)),
+            (Counts{500, 520, 520, 611, 611, 750, 800}));
+}
+
+TEST(GyroFarEnd, FaultsCanBeCountedInFrames) {
+  config::FaultSpec late = fault("gyro", FaultKind::kLateAnswer, 0.0, 0.0);
+  late.at_operation = 521;
+  late.operations = 100;
+  EXPECT_EQ(arrivals(late), (std::vector<std::size_t>{500, 520, 520, 650, 700, 750, 800}));
+  config::FaultSpec unplugged = late;
+  unplugged.kind = FaultKind::kTimeout;
+  EXPECT_EQ(arrivals(unplugged).back(), 700U);
 }
 
 TEST(GyroFarEnd, SaysThatItIsUnpluggedWhileItIs) {

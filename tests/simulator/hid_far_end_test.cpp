@@ -107,7 +107,9 @@ TEST(HidFarEnd, FailsInTheWaysOfTheScenario) {
                      fault("magnetometer", FaultKind::kStuck, 30.0, 5.0),
                      fault("magnetometer", FaultKind::kNan, 40.0, 5.0),
                      fault("magnetometer", FaultKind::kBadSequence, 50.0, 5.0),
-                     fault("magnetometer", FaultKind::kGarbage, 60.0, 5.0)};
+                     fault("magnetometer", FaultKind::kGarbage, 60.0, 5.0),
+                     fault("magnetometer", FaultKind::kLateAnswer, 80.0, 5.0),
+                     fault("magnetometer", FaultKind::kSlowAnswer, 90.0, 5.0)};
   TestFarEnds bench(test_bench(), scenario);
   const auto at = [&](double time_s) {
     bench.clock.sleep_until(drivers::Clock::Instant{drivers::from_seconds(time_s)});
@@ -119,12 +121,35 @@ TEST(HidFarEnd, FailsInTheWaysOfTheScenario) {
   EXPECT_EQ(at(21.0).error().code, ErrorCode::kUnplugged);
   EXPECT_FALSE(bench.ends.magnetometer->write_report(Report{}));
   const Report before = *at(29.0);
-  EXPECT_EQ(*at(31.0), before);
-  EXPECT_EQ(*at(34.0), before);
+  for (const double stuck_at_s : {31.0, 34.0}) {
+    const Report stuck = *at(stuck_at_s);
+    EXPECT_TRUE(std::equal(stuck.begin(), stuck.begin() + 13, before.begin()));
+    EXPECT_NE(stuck[13], before[13]) << "the count goes on";
+  }
   EXPECT_EQ((*at(41.0))[4], 0x80);  // The most negative number: no reading.
   EXPECT_EQ((*at(51.0))[13], 510 / 2 % 256);
   EXPECT_NE((*at(61.0))[0], 7);
   EXPECT_NEAR(field(*at(70.0), 0), -50.0, 0.1);
+  EXPECT_EQ(at(81.0).error().code, ErrorCode::kTimeout);
+  EXPECT_EQ(bench.clock.now().time_since_epoch(), 82s);
+  EXPECT_TRUE(at(90.0)) << "just under the deadline";
+  EXPECT_EQ(bench.clock.now().time_since_epoch(), 90900ms);
+}
+
+TEST(HidFarEnd, SaysInItsStatusThatSomethingIsWrong) {
+  config::BenchConfig config = test_bench();
+  config::FieldSpec status;
+  status.name = "status";
+  status.offset_bytes = 14;
+  status.type = config::NumberType::kUint8;
+  config.magnetometer.device.fields.push_back(status);
+  config::ScenarioConfig scenario;
+  scenario.faults = {fault("magnetometer", FaultKind::kException, 10.0, 5.0)};
+  TestFarEnds bench(config, scenario);
+  bench.run_for(9.0);
+  EXPECT_EQ((*read(bench))[14], 0);
+  bench.run_for(2.0);
+  EXPECT_EQ((*read(bench))[14], 1);
 }
 
 }  // namespace

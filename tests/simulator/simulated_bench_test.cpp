@@ -38,9 +38,9 @@ TEST(SimulatedBench, RefusesWhatItCannotSimulate) {
     expect_refused(test_bench(), {.faults = {fault(device, FaultKind::kSilentExecution, 0, 1)}},
                    "cannot have the fault silent_execution; it can:");
   }
-  for (const char* device : {"thermostat", "coil_horizontal", "coil_vertical", "turntable"}) {
-    expect_refused(test_bench(), {.faults = {fault(device, FaultKind::kBadSequence, 0, 1)}},
-                   "cannot have the fault bad_sequence");
+  for (const char* device : {"magnetometer", "coil_horizontal", "coil_vertical", "turntable"}) {
+    expect_refused(test_bench(), {.faults = {fault(device, FaultKind::kBadChecksum, 0, 1)}},
+                   "cannot have the fault bad_checksum");
   }
 }
 
