@@ -44,8 +44,10 @@ void describe(Visitor& v, RegisterSpec& r) {
   v.optional("word_order", r.word_order, "Which word of a 32-bit number comes first.");
   v.optional("access", r.access, "What the instrument allows.");
   v.optional("unit", r.unit, "Unit of the value.");
-  v.optional("minimum", r.minimum, "A lower value is refused before it reaches the wire.");
-  v.optional("maximum", r.maximum, "A higher value is refused before it reaches the wire.");
+  v.optional(
+      "minimum", r.minimum,
+      "A lower value is refused before it reaches the wire, and is an error when it is read.");
+  v.optional("maximum", r.maximum, "A higher value likewise.");
 }
 
 template <class Visitor>
@@ -65,6 +67,10 @@ void describe(Visitor& v, ModbusDevice& d) {
   v.required("target_minimum_c", d.target_minimum, "Lowest set point that the instrument takes.");
   v.required("target_maximum_c", d.target_maximum, "Highest set point that the instrument takes.");
   v.optional("max_age_s", d.max_age, "An older reading is stale.", above(0));
+  v.optional("stuck_after_s", d.stuck_after,
+             "All temperatures unchanged to the last bit for this long are stale. Leave it out "
+             "where the resolution is coarser than the noise.",
+             above(0));
 }
 
 template <class Visitor>
@@ -143,6 +149,10 @@ void describe(Visitor& v, HidDevice& d) {
   v.optional("report_period_s", d.report_period, "Time from one report to the next.",
              between(0.0001, 60));
   v.optional("max_age_s", d.max_age, "An older reading is stale.", above(0));
+  v.optional("stuck_after_s", d.stuck_after,
+             "Three axes unchanged to the last bit for this long are stale. Leave it out where the "
+             "resolution is coarser than the noise.",
+             above(0));
 }
 
 template <class Visitor>
@@ -178,6 +188,11 @@ void describe(Visitor& v, FrameDevice& d) {
   v.required("crc", d.crc, "The check value.");
   v.required("frame_rate_hz", d.frame_rate_hz, "Frames a second.", between(0.1, 100000));
   v.optional("baud", d.baud, "Bits a second on the line, 10 bits a byte.", at_least(300));
+  v.optional(
+      "stuck_after_s", d.stuck_after,
+      "Frames that repeat the rate to the last bit for longer than this are not valid. Leave "
+      "it out where the resolution is coarser than the noise.",
+      above(0));
 }
 
 bool check(const Place& at, const ModbusDevice& device);

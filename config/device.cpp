@@ -192,6 +192,10 @@ bool check(const Place& at, const ScpiDevice& d) {
   if (d.minimum >= d.maximum) {
     return (at / "minimum").wrong(fmt::format("less than the maximum {}", d.maximum));
   }
+  if (d.unit == "A" && (d.minimum > 0 || d.maximum < 0)) {
+    return (at / (d.minimum > 0 ? "minimum" : "maximum"))
+        .wrong("a range with 0 A in it, where the safe state is");
+  }
   if (d.output_on.empty() != d.output_off.empty()) {
     return (at / (d.output_on.empty() ? "output_on" : "output_off"))
         .wrong("output_on and output_off both, or neither");

@@ -23,7 +23,8 @@ enum class ByteOrder { kBigEndian, kLittleEndian };
 enum class Access { kRead, kWrite, kReadWrite };
 
 /// One named quantity of a Modbus instrument: value = raw * scale + offset, in `unit`.
-/// A value outside [minimum, maximum] is refused before it reaches the wire.
+/// A value outside [minimum, maximum] is refused before it reaches the wire, and is an error when
+/// it is read.
 struct RegisterSpec {
   std::string name;
   std::uint16_t address = 0;
@@ -52,6 +53,9 @@ struct ModbusDevice {
   Celsius target_minimum{0.0};
   Celsius target_maximum{0.0};
   Seconds max_age{2.0};  ///< an older reading is stale
+  /// All temperatures unchanged to the last bit for this long are stale; nothing where the
+  /// resolution is coarser than the noise.
+  std::optional<Seconds> stuck_after;
 };
 
 /// A SCPI instrument on USBTMC (a coil supply) or serial (a turntable). `{value}` stands for the
@@ -101,6 +105,7 @@ struct HidDevice {
       {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
   Seconds report_period{0.1};
   Seconds max_age{1.0};
+  std::optional<Seconds> stuck_after;  ///< as a ModbusDevice's, of the three axes
 };
 
 /// A cyclic redundancy check in the Rocksoft model's parameters.
@@ -132,6 +137,8 @@ struct FrameDevice {
   CrcSpec crc;
   double frame_rate_hz = 1000.0;
   std::uint32_t baud = 921600;
+  /// As a ModbusDevice's, of the rate: frames that repeat it beyond are not valid.
+  std::optional<Seconds> stuck_after;
 };
 
 using DeviceFile = std::variant<ModbusDevice, ScpiDevice, HidDevice, FrameDevice>;

@@ -21,6 +21,8 @@ struct NoiseCoefficients {
   double bias_instability_deg_per_h = 0.0;             ///< B
   double rate_random_walk_deg_per_h_per_sqrt_h = 0.0;  ///< K
   double quantisation_deg = 0.0;                       ///< Q
+
+  friend bool operator==(const NoiseCoefficients&, const NoiseCoefficients&) = default;
 };
 
 /// A grade's coefficients by name: "tactical", "navigation", "none"; kBadInput otherwise.

@@ -139,6 +139,10 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
 Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
                                                const OpenRecord& open_record, Speed speed,
                                                drivers::Operator& person) {
+  // A gyro without noise stands still by right.
+  if (setup.scenario.noise == config::NoiseCoefficients{}) {
+    setup.bench.gyro.device.stuck_after.reset();
+  }
   std::unique_ptr<Session> session(new Session(std::move(setup), seed));
   const Setup& made = session->setup_;
   if (speed == Speed::kRealtime) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -10,6 +11,15 @@ namespace {
 
 /// Large enough to spread the cost of a read, small enough for the second-level cache.
 constexpr std::size_t kBufferBytes = std::size_t{64} * 1024;
+
+/// Frames within stuck_after; chance repeats a rate once, hardly twice.
+std::uint32_t repeats_within(const config::FrameDevice& device) {
+  constexpr double kFewest = 2.0;
+  constexpr double kMost = 4e9;
+  if (!device.stuck_after) return std::numeric_limits<std::uint32_t>::max();
+  const double frames = device.stuck_after->count() * device.frame_rate_hz;
+  return static_cast<std::uint32_t>(std::clamp(frames, kFewest, kMost));
+}
 
 }  // namespace
 
@@ -64,6 +74,7 @@ FrameParser::FrameParser(const config::FrameDevice& device)
       status_mask_(device.status_valid_mask),
       sequence_offset_(device.sequence_offset_bytes),
       modulus_(device.sequence_modulus),
+      most_repeats_(repeats_within(device)),
       buffer_(kBufferBytes) {
   assert(check_layout(device));
   std::memcpy(&header_, device.header.data(), device.header.size());
@@ -122,7 +133,10 @@ void FrameParser::parse(std::size_t count, GyroBlock& block) {
     const std::int64_t index = counter_.advance(
         sequence, static_cast<std::int64_t>(periods_skipped), entries_ + size - before);
     const auto rate = static_cast<float>(rate_.read(frame, byte_order_));
-    if ((frame[status_offset_] & status_mask_) != status_mask_ || !std::isfinite(rate)) {
+    rate_repeats_ = rate == last_rate_ ? rate_repeats_ + 1 : 0;
+    last_rate_ = rate;
+    if ((frame[status_offset_] & status_mask_) != status_mask_ || !std::isfinite(rate) ||
+        stands_still()) {
       ++statistics_.frames_invalid;
       continue;
     }

@@ -5,11 +5,13 @@
 //   while (bytes come)  parser.parse(serial.read_some(parser.space()), block);
 //   parser.settle(clock.now(), block);
 //
-// A frame is good when header, check value and status are; a place that looks like a header but
-// whose check value fails is left by one byte, so that a frame that begins inside it is found.
+// A frame is good when header, check value and status are and its rate does not stand still; a
+// place that looks like a header but whose check value fails is left by one byte, so that a frame
+// that begins inside it is found.
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -44,6 +46,8 @@ class FrameParser {
 
   /// Good, repeated and missing frames are counted by settle(), the others by parse().
   const StreamStatistics& statistics() const { return statistics_; }
+  /// Whether the rate has stood still to the last bit for longer than it may.
+  bool stands_still() const { return rate_repeats_ > most_repeats_; }
   /// Of the newest frame; -1 before the first.
   std::int64_t last_index() const { return counter_.last_index(); }
 
@@ -85,7 +89,10 @@ class FrameParser {
   std::uint8_t status_mask_;
   std::size_t sequence_offset_;
   std::uint32_t modulus_;
+  std::uint32_t most_repeats_;  ///< of the rate in frames one after the other
 
+  float last_rate_ = std::numeric_limits<float>::quiet_NaN();
+  std::uint32_t rate_repeats_ = 0;
   std::vector<std::uint8_t> buffer_;
   std::size_t filled_ = 0;          ///< bytes at the start of the buffer that wait for more
   std::size_t unframed_bytes_ = 0;  ///< thrown away since the last frame whose check value held

@@ -16,6 +16,20 @@ constexpr const char* kAxisNames[] = {"field_x", "field_y", "field_z"};
 /// A converter at its stop reads the end of the range; rounding must not hide that.
 constexpr double kRoundingOfRange = 1e-6;
 
+/// How far a counter of this type counts before it starts again from 0.
+double turn_of(NumberType type) {
+  switch (type) {
+    case NumberType::kFloat32:
+      return 0x1p24;  // beyond it a float has no odd numbers
+    case NumberType::kInt8:
+    case NumberType::kInt16:
+    case NumberType::kInt32:
+      return std::ldexp(1.0, static_cast<int>(8 * byte_count(type)) - 1);
+    default:
+      return std::ldexp(1.0, static_cast<int>(8 * byte_count(type)));
+  }
+}
+
 }  // namespace
 
 HidMagnetometer::HidMagnetometer(std::string name, config::HidDevice device,
@@ -23,7 +37,8 @@ HidMagnetometer::HidMagnetometer(std::string name, config::HidDevice device,
     : name_(std::move(name)),
       device_(std::move(device)),
       transport_(std::move(transport)),
-      clock_(clock) {
+      clock_(clock),
+      stillness_(device_.stuck_after) {
   const auto find = [&](std::string_view wanted) -> const config::FieldSpec* {
     const auto found = std::find_if(device_.fields.begin(), device_.fields.end(),
                                     [&](const auto& field) { return field.name == wanted; });
@@ -97,11 +112,30 @@ Result<FieldReading> HidMagnetometer::read() {
     clock_.sleep_until(
         std::min(give_up, clock_.now() + from_seconds(device_.report_period.count())));
   }
+  // One that has restarted counts from 0 too: the next report is good again.
+  const bool old = goes_back(report);
   last_ = report;
+  last_at_ = clock_.now();
+  if (old) return error(ErrorCode::kStale, "the count of its reports went back");
   return decode(report);
 }
 
-Result<FieldReading> HidMagnetometer::decode(std::span<const std::uint8_t> report) const {
+bool HidMagnetometer::goes_back(const std::vector<std::uint8_t>& report) const {
+  if (sequence_ == nullptr || last_.empty()) return false;
+  const double turn = turn_of(sequence_->type);
+  // After half a turn of silence ahead and back look the same.
+  const double due = to_seconds(clock_.now() - last_at_) / device_.report_period.count();
+  if (due > 0.5 * turn) return false;
+  const auto count = [&](const std::vector<std::uint8_t>& from) {
+    return raw_from_bits(sequence_->type,
+                         load_bytes(from.data() + sequence_->offset_bytes,
+                                    byte_count(sequence_->type), device_.byte_order));
+  };
+  const double ahead = count(report) - count(last_);
+  return !((ahead < 0 ? ahead + turn : ahead) <= 0.5 * turn);  // a NaN is no count either
+}
+
+Result<FieldReading> HidMagnetometer::decode(std::span<const std::uint8_t> report) {
   if (status_ != nullptr) {
     const auto status = read_field(*status_, device_.byte_order, report);
     if (!status) return named(name_, status.error());
@@ -119,6 +153,11 @@ Result<FieldReading> HidMagnetometer::decode(std::span<const std::uint8_t> repor
                                *value, device_.range.value));
     }
     centred_ut[i] = *value - device_.calibration_offset_ut[i];
+  }
+  const auto still = stillness_.add(centred_ut, clock_.now());
+  if (still) {
+    return error(ErrorCode::kStale,
+                 fmt::format("no axis has moved by a bit for {:.1f} s", still->count()));
   }
   FieldReading reading;
   reading.taken_at = clock_.now();

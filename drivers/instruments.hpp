@@ -115,7 +115,7 @@ struct GyroBlock {
 struct StreamStatistics {
   std::uint64_t frames_good = 0;
   std::uint64_t frames_bad_checksum = 0;
-  std::uint64_t frames_invalid = 0;  ///< status said that the reading is not valid
+  std::uint64_t frames_invalid = 0;  ///< status said so, or the rate stood still
   std::uint64_t frames_repeated = 0;
   std::uint64_t frames_missing = 0;  ///< by sequence number (bad and invalid ones included)
   std::uint64_t bytes_skipped = 0;   ///< thrown away while looking for a header

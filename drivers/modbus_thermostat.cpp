@@ -19,6 +19,18 @@ constexpr std::size_t kMostWords = 125;  ///< of one Modbus read
 constexpr std::pair<HeatingMode, const char*> kModes[] = {
     {HeatingMode::kOff, "off"}, {HeatingMode::kBoost, "boost"}, {HeatingMode::kNormal, "normal"}};
 
+bool is_within(const RegisterSpec& spec, double value) {
+  return !(spec.minimum && value < *spec.minimum) && !(spec.maximum && value > *spec.maximum);
+}
+
+std::string range_text(const RegisterSpec& spec) {
+  const auto bound = [](const std::optional<double>& b, const char* none) {
+    return b ? fmt::format("{}", *b) : std::string(none);
+  };
+  return fmt::format("{} ... {} {}", bound(spec.minimum, "any"), bound(spec.maximum, "any"),
+                     spec.unit);
+}
+
 /// Lost or garbled on the way, as against refused. A connection that the other side has closed is
 /// made anew at once.
 bool may_repeat(const Error& error) {
@@ -43,7 +55,8 @@ ModbusThermostat::ModbusThermostat(std::string name, config::ModbusDevice device
     : name_(std::move(name)),
       device_(std::move(device)),
       transport_(std::move(transport)),
-      clock_(clock) {}
+      clock_(clock),
+      stillness_(device_.stuck_after) {}
 
 Result<std::unique_ptr<ModbusThermostat>> ModbusThermostat::open(
     std::string name, const config::ModbusDevice& device,
@@ -118,9 +131,17 @@ Result<double> ModbusThermostat::read_one(const RegisterSpec& spec) {
     return error(status.error().code, fmt::format("reading register {} at {}: {}", spec.name,
                                                   spec.address, status.error().message));
   }
+  return value_of(spec, words);
+}
+
+Result<double> ModbusThermostat::value_of(const RegisterSpec& spec,
+                                          std::span<const std::uint16_t> words) const {
   const auto value = drivers::read_words(spec, words);
   if (!value) return named(name_, value.error());
-  return *value;
+  if (is_within(spec, *value)) return *value;
+  return error(ErrorCode::kProtocol,
+               fmt::format("register {} at {} reads {} {}, expected {}", spec.name, spec.address,
+                           *value, spec.unit, range_text(spec)));
 }
 
 Status ModbusThermostat::write_and_verify(const RegisterSpec& spec, double value) {
@@ -129,6 +150,11 @@ Status ModbusThermostat::write_and_verify(const RegisterSpec& spec, double value
     return named(name_, encoded.error());
   }
   const double wanted = *drivers::read_words(spec, words);  // rounded as the register rounds
+  if (!is_within(spec, wanted)) {
+    return error(ErrorCode::kLimit,
+                 fmt::format("{} {} for register {} at {}, expected {}", wanted, spec.unit,
+                             spec.name, spec.address, range_text(spec)));
+  }
   Status written;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     written = transport_->write_registers(spec.address, words);
@@ -193,10 +219,10 @@ Result<ThermostatReading> ModbusThermostat::read() {
     const auto group = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) {
       return spec.address >= g.address && spec.address < g.address + g.words.size();
     });
-    const auto value = drivers::read_words(
+    const auto value = value_of(
         spec,
         std::span(group->words).subspan(spec.address - group->address, word_count(spec.type)));
-    if (!value) return named(name_, value.error());
+    if (!value) return value.error();
     values[i] = *value;
   }
   const auto mode = mode_of(values[kMode]);
@@ -206,6 +232,11 @@ Result<ThermostatReading> ModbusThermostat::read() {
     return error(ErrorCode::kStale,
                  fmt::format("the reading took {:.1f} s, it may be {} s old",
                              to_seconds(now - started), device_.max_age.count()));
+  }
+  const auto still = stillness_.add(std::span(values).first(kAmbient + 1), now);
+  if (still) {
+    return error(ErrorCode::kStale,
+                 fmt::format("no temperature has moved by a bit for {:.1f} s", still->count()));
   }
   return ThermostatReading{.taken_at = now,
                            .working_1 = Celsius{values[kWorking1]},

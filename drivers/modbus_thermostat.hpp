@@ -9,6 +9,7 @@
 
 #include "config/device.hpp"
 #include "drivers/instruments.hpp"
+#include "drivers/stillness.hpp"
 #include "drivers/transport.hpp"
 
 namespace fogbench::drivers {
@@ -57,6 +58,9 @@ class ModbusThermostat final : public Thermostat {
   void group_registers();
   /// Repeats a read that failed on the way; a refusal is final.
   Status read_words(std::uint16_t address, std::span<std::uint16_t> words);
+  /// kProtocol for a number that the register cannot sensibly hold.
+  Result<double> value_of(const config::RegisterSpec& spec,
+                          std::span<const std::uint16_t> words) const;
   Result<double> read_one(const config::RegisterSpec& spec);
   /// Writes and reads back. A write without an answer may have been executed, so it is repeated
   /// only after the read-back has shown that it was not.
@@ -70,6 +74,7 @@ class ModbusThermostat final : public Thermostat {
   Clock& clock_;
   std::array<const config::RegisterSpec*, kQuantities> specs_{};  ///< into device_.registers
   std::vector<Group> groups_;
+  StillnessWatch stillness_;
 };
 
 }  // namespace fogbench::drivers

@@ -25,6 +25,14 @@ constexpr int kMostErrors = 64;
 /// SCPI-99, 7.2.1.4 and 5: an instrument's words for infinity and not-a-number.
 constexpr double kInfinity = 9.9e37;
 
+/// What a value is rounded to on its way.
+constexpr double kSentResolution = 1e-6;
+
+/// Lost or garbled on the way, as against refused: the outcome is unknown.
+bool is_lost(const Error& error) {
+  return error.code == ErrorCode::kTimeout || error.code == ErrorCode::kProtocol;
+}
+
 bool is_self_test(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
@@ -51,6 +59,8 @@ ScpiDialogue::ScpiDialogue(std::string name, const config::ScpiDevice& device,
       expected_identity_(device.identity),
       initialise_(device.initialise),
       set_(device.set),
+      set_query_(device.set_query),
+      set_tolerance_(std::max(device.resolution, kSentResolution)),
       error_query_(device.error_query),
       transport_(std::move(transport)) {}
 
@@ -85,7 +95,7 @@ Status ScpiDialogue::begin() {
                                                  one_line(*identity), expected_identity_));
   }
   identity_ = one_line(*identity);
-  if (const auto old = drain_errors(); !old) return old.error();
+  if (const auto old = drain_errors(&ScpiDialogue::query); !old) return old.error();
   for (const std::string& text : initialise_) {
     if (Status done = command(text); !done) return done;
   }
@@ -105,39 +115,48 @@ Error ScpiDialogue::failed(const std::string& what, const Error& failure) {
   return error(failure.code, fmt::format("{}: {}", what, failure.message));
 }
 
+Result<std::string> ScpiDialogue::ask(const std::string& question) {
+  if (const Status sent = transport_->write(question); !sent) return sent.error();
+  return transport_->read(kAnswerTimeout);
+}
+
 Result<std::string> ScpiDialogue::query(const std::string& question) {
   if (const Status resumed = resume(); !resumed) return resumed.error();
-  std::optional<Error> failure;
+  Error failure{ErrorCode::kTimeout, ""};
+  std::string queue;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    if (const Status sent = transport_->write(question); !sent) {
-      failure = sent.error();
-    } else {
-      auto answer = transport_->read(kAnswerTimeout);
-      if (answer) return answer;
-      failure = answer.error();
-    }
-    if (failure->code != ErrorCode::kTimeout) break;
+    auto answer = ask(question);
+    if (answer) return answer;
+    failure = answer.error();
+    if (!is_lost(failure)) break;
     // Nothing half-said may be left on either side before the question is put again.
     if (const Status cleared = transport_->clear(); !cleared) break;
+    // Nor an entry about this question that the next command would be blamed for.
+    if (question == error_query_) continue;
+    const auto entries = drain_errors(&ScpiDialogue::ask);
+    if (entries && !entries->empty()) queue += fmt::format(" ({})", *entries);
   }
-  return failed(question, *failure);
+  failure.message += queue;
+  return failed(question, failure);
 }
 
 Result<double> ScpiDialogue::query_number(const std::string& question) {
-  const auto answer = query(question);
-  if (!answer) return answer.error();
-  const auto value = parse_number(*answer);
-  if (!value || !(std::abs(*value) < kInfinity)) {
-    return error(ErrorCode::kProtocol,
-                 fmt::format("{} answers \"{}\", expected a number", question, one_line(*answer)));
+  std::string says;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const auto answer = query(question);
+    if (!answer) return answer.error();
+    const auto value = parse_number(*answer);
+    if (value && std::abs(*value) < kInfinity) return *value;
+    says = *answer;
   }
-  return *value;
+  return error(ErrorCode::kProtocol,
+               fmt::format("{} answers \"{}\", expected a number", question, one_line(says)));
 }
 
 Status ScpiDialogue::command(const std::string& text) {
   if (Status resumed = resume(); !resumed) return resumed;
   if (const Status sent = transport_->write(text); !sent) return failed(text, sent.error());
-  const auto errors = drain_errors();
+  const auto errors = drain_errors(&ScpiDialogue::query);
   if (!errors) return errors.error();
   if (errors->empty()) return {};
   return error(ErrorCode::kDevice, fmt::format("{} was refused: {}", text, *errors));
@@ -151,13 +170,20 @@ Status ScpiDialogue::set(double value) {
     return error(ErrorCode::kBadInput, fmt::format("\"{}\" has no {} in it", set_, kPlace));
   }
   // Micro-units; never an exponent, which some firmware does not read.
-  return command(text.replace(place, kPlace.size(), fmt::format("{:.6f}", value)));
+  text.replace(place, kPlace.size(), fmt::format("{:.6f}", value));
+  Status done = command(text);
+  if (done || !is_lost(done.error()) || set_query_.empty()) return done;
+  if (const Status cleared = transport_->clear(); !cleared) return done;
+  const auto present = query_number(set_query_);
+  if (!present) return done;
+  return std::abs(*present - value) <= set_tolerance_ ? Status{} : command(text);
 }
 
-Result<std::string> ScpiDialogue::drain_errors() {
+Result<std::string> ScpiDialogue::drain_errors(
+    Result<std::string> (ScpiDialogue::*put)(const std::string&)) {
   std::string all;
   for (int i = 0; i < kMostErrors; ++i) {
-    const auto entry = query(error_query_);
+    const auto entry = (this->*put)(error_query_);
     if (!entry) return entry.error();
     const auto code = parse_number(std::string_view(*entry).substr(0, entry->find(',')));
     if (!code) {

@@ -29,13 +29,15 @@ class ScpiDialogue {
   // An instrument that was unplugged may have forgotten what it was told: the first of these that
   // reaches it again opens the dialogue anew, with its identity checked, before it does its own.
 
-  /// Asks again once when no answer came: a question changes nothing.
+  /// Asks again once when no answer came, or one that is not to this question: a question changes
+  /// nothing. What the failed one left in the error queue is taken out of it.
   Result<std::string> query(const std::string& question);
-  /// kProtocol when the answer is no finite number.
+  /// Asks again once when the answer is no finite number; kProtocol when it is none again.
   Result<double> query_number(const std::string& question);
   /// Sends it once, then empties the error queue. kDevice with every entry that was in it.
   Status command(const std::string& text);
-  /// The description's `set` with {value} replaced.
+  /// The description's `set` with {value} replaced. When it was lost or its outcome unknown, what
+  /// the instrument says that it was set to decides whether it is sent again, once.
   Status set(double value);
 
   Error error(ErrorCode code, const std::string& message) const;
@@ -49,14 +51,18 @@ class ScpiDialogue {
   Status resume();
   /// The error as the dialogue's; takes note when the instrument is gone.
   Error failed(const std::string& what, const Error& error);
-  /// All entries, joined; empty when there were none.
-  Result<std::string> drain_errors();
+  /// One question, one answer.
+  Result<std::string> ask(const std::string& question);
+  /// All entries, joined; empty when there were none. `put` is how the question is put.
+  Result<std::string> drain_errors(Result<std::string> (ScpiDialogue::*put)(const std::string&));
 
   std::string name_;
   std::string expected_identity_;
   std::vector<std::string> initialise_;
   std::string identity_;
   std::string set_;
+  std::string set_query_;
+  double set_tolerance_;  ///< within it two values are one setting
   std::string error_query_;
   std::unique_ptr<MessageTransport> transport_;
   bool lost_ = false;  ///< since the dialogue was begun

@@ -100,9 +100,10 @@ Status SerialGyro::read(GyroBlock& out) {
   return Error{
       ErrorCode::kProtocol,
       fmt::format("{}: {} bytes in {:.1f} s but no good frame ({} with a wrong check value,"
-                  " {} invalid so far)",
+                  " {} invalid so far{})",
                   name_, bytes_since_good_, silence, parser_.statistics().frames_bad_checksum,
-                  parser_.statistics().frames_invalid)};
+                  parser_.statistics().frames_invalid,
+                  parser_.stands_still() ? "; the rate stands still" : "")};
 }
 
 Clock::Instant SerialGyro::time_of(std::int64_t index) const {

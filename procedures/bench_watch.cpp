@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/named_error.hpp"
+
 namespace fogbench::procedures {
 namespace {
 
@@ -123,9 +125,8 @@ Status BenchWatch::note(Outage& outage, const Status& outcome) {
   const bool unplugged = outcome.error().code == ErrorCode::kUnplugged;
   if (!outage.since) {
     outage.since = now;
-    const auto noted = event(
-        "warning",
-        fmt::format("{}: {}; its readings are missing until it answers", outage.instrument, fault));
+    const auto noted = event("warning", fmt::format("{}; its readings are missing until it answers",
+                                                    drivers::named(outage.instrument, fault)));
     if (!noted) return noted;
   }
   if (unplugged && field_guarded_) return outcome;

@@ -85,6 +85,13 @@ std::string MeasurementWindow::void_reason() const {
     return fmt::format("only {} readings of the magnetometer in {} s", field_x_.count(),
                        duration_.count());
   }
+  for (const auto& [name, current] : {std::pair{"coil_horizontal", &current_horizontal_},
+                                      std::pair{"coil_vertical", &current_vertical_}}) {
+    if (too_few(current->count(), duration_)) {
+      return fmt::format("only {} readings of {} in {} s", current->count(), name,
+                         duration_.count());
+    }
+  }
   return {};
 }
 

@@ -17,23 +17,15 @@ constexpr int kPowerReads = 10;
 /// Below what any heater is switched at, above the resolution of a power reading.
 constexpr double kOffW = 0.1;
 
-Status repeatedly(const std::function<Status()>& action) {
-  Status last;
-  for (int i = 0; i < kTries; ++i) {
-    last = action();
-    if (last) return last;
-  }
-  return last;
-}
-
 Status heaters_off(drivers::Thermostat& thermostat) {
-  const auto switched = repeatedly([&] { return thermostat.set_mode(HeatingMode::kOff); });
+  const auto switched = thermostat.set_mode(HeatingMode::kOff);
   if (!switched) return switched;
   Status last;
-  for (int i = 0; i < kPowerReads; ++i) {
+  for (int i = 0, failed = 0; i < kPowerReads && failed < kTries; ++i) {
     const auto reading = thermostat.read();
     if (!reading) {
       last = reading.error();
+      ++failed;
       continue;
     }
     if (reading->mode != HeatingMode::kOff) {
@@ -49,16 +41,34 @@ Status heaters_off(drivers::Thermostat& thermostat) {
 }  // namespace
 
 Status make_safe(drivers::Bench& bench) {
+  struct Task {
+    const char* name;
+    std::function<Status()> act;
+    bool done = false;
+    std::string failure;
+  };
+  std::vector<Task> tasks;
+  const auto add = [&tasks](const char* name, std::function<Status()> act) {
+    tasks.push_back({name, std::move(act), false, {}});
+  };
+  // The coils first: a message switches them off. In rounds, so that a dead instrument delays the
+  // others by one try instead of all of its own.
+  if (bench.coil_horizontal)
+    add("coil_horizontal", [&] { return bench.coil_horizontal->make_safe(); });
+  if (bench.coil_vertical) add("coil_vertical", [&] { return bench.coil_vertical->make_safe(); });
+  if (bench.thermostat) add("thermostat", [&] { return heaters_off(*bench.thermostat); });
+  for (int round = 0; round < kTries; ++round) {
+    for (Task& task : tasks) {
+      if (task.done) continue;
+      const Status outcome = task.act();
+      task.done = static_cast<bool>(outcome);
+      if (!outcome) task.failure = fmt::format("{} ({})", task.name, outcome.error().message);
+    }
+  }
   std::vector<std::string> failed;
-  const auto expect = [&](const char* name, const Status& status) {
-    if (!status) failed.push_back(fmt::format("{} ({})", name, status.error().message));
-  };
-  const auto current_off = [](drivers::CoilSupply& coil) {
-    return repeatedly([&] { return coil.make_safe(); });
-  };
-  if (bench.thermostat) expect("thermostat", heaters_off(*bench.thermostat));
-  if (bench.coil_horizontal) expect("coil_horizontal", current_off(*bench.coil_horizontal));
-  if (bench.coil_vertical) expect("coil_vertical", current_off(*bench.coil_vertical));
+  for (const Task& task : tasks) {
+    if (!task.done) failed.push_back(task.failure);
+  }
   if (failed.empty()) return {};
   return Error{ErrorCode::kDevice,
                fmt::format("the safe state is not confirmed for {}", fmt::join(failed, "; "))};

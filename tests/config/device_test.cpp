@@ -98,6 +98,8 @@ INSTANTIATE_TEST_SUITE_P(
                             "/unit: found \"V\", expected \"A\" or \"deg\""},
                     Mistake{kCoil, R"([{"op": "replace", "path": "/minimum", "value": 6}])",
                             "/minimum: found 6, expected less than the maximum 6"},
+                    Mistake{kCoil, R"([{"op": "replace", "path": "/minimum", "value": 1}])",
+                            "/minimum: found 1, expected a range with 0 A in it"},
                     Mistake{kCoil, R"([{"op": "remove", "path": "/output_off"}])",
                             "/output_off: found nothing, expected output_on and output_off both"},
                     Mistake{kCoil, R"([{"op": "add", "path": "/initialise/-", "value": "*tst?"}])",

@@ -290,5 +290,17 @@ TEST(FrameParser, EveryUndamagedFrameComesOutOnceAndNoDamagedOne) {
   }
 }
 
+TEST(FrameParser, FramesWhoseRateStandsStillAreNotValid) {
+  config::FrameDevice device = kvh_device();
+  device.stuck_after = config::Seconds{3.0 / device.frame_rate_hz};
+  Stream stream(device);
+  const double rates[] = {1, 2, 2, 2, 2, 2, 2, 3, 4};
+  for (std::int64_t i = 0; i < 9; ++i) stream.feed(kvh_frame(i, rates[i]));
+  stream.settle();
+  EXPECT_EQ(stream.block.index, (std::vector<std::int64_t>{0, 1, 2, 3, 4, 7, 8}));
+  EXPECT_EQ(stream.statistics().frames_invalid, 2u);
+  EXPECT_EQ(stream.statistics().frames_missing, 2u);
+}
+
 }  // namespace
 }  // namespace fogbench::drivers

@@ -180,5 +180,42 @@ TEST_F(HidMagnetometerTest, ALayoutThatCannotBeIsBadInput) {
             "magnetometer: the report of test magnetometer has no field field_x");
 }
 
+TEST_F(HidMagnetometerTest, AReportWhoseCountWentBackIsStaleOnce) {
+  const auto magnetometer = opened();
+  const auto read = [&](double field_ut, int sequence) {
+    far_.reports = {report({field_ut, 0.0, 0.0}, sequence)};
+    return magnetometer->read();
+  };
+  EXPECT_TRUE(read(1.0, 500));
+  const auto old = read(2.0, 250);
+  ASSERT_FALSE(old);
+  EXPECT_EQ(old.error().code, ErrorCode::kStale);
+  EXPECT_EQ(old.error().message, "magnetometer: the count of its reports went back");
+  EXPECT_TRUE(read(3.0, 251)) << "it may have restarted";
+}
+
+TEST_F(HidMagnetometerTest, ACountMayTurnOverAndAnyNumberMayComeAfterALongSilence) {
+  const auto magnetometer = opened();
+  far_.reports = {report({1.0, 0.0, 0.0}, 65530)};
+  // 0 was the last one: 65530 of 65536 looks like a step back, unless nobody has read for long.
+  clock_.sleep_for(2h);
+  EXPECT_TRUE(magnetometer->read());
+  clock_.sleep_for(1s);
+  far_.reports = {report({1.1, 0.0, 0.0}, 4)};
+  EXPECT_TRUE(magnetometer->read());
+}
+
+TEST_F(HidMagnetometerTest, AxesThatStandStillWhileTheCountGoesOnAreStale) {
+  device_.stuck_after = config::Seconds{2.0};
+  const auto magnetometer = opened();
+  std::vector<bool> good;
+  for (int second = 1; second <= 4; ++second) {
+    clock_.sleep_for(1s);
+    far_.reports = {report({1.0, 2.0, second < 4 ? 3.0 : 3.1}, 10 * second)};
+    good.push_back(static_cast<bool>(magnetometer->read()));
+  }
+  EXPECT_EQ(good, (std::vector<bool>{true, false, false, true}));
+}
+
 }  // namespace
 }  // namespace fogbench::drivers

@@ -266,5 +266,47 @@ TEST_F(ModbusThermostatTest, TwoQuantitiesMayShareARegister) {
   EXPECT_NEAR(thermostat->read()->boost_power.value, 2.0, 1e-9);
 }
 
+TEST_F(ModbusThermostatTest, ANumberThatARegisterCannotSensiblyHoldIsAProtocolError) {
+  spec("temperature_control").minimum = 5.0;
+  spec("temperature_control").maximum = 120.0;
+  spec("temperature_control").unit = "degC";
+  const auto thermostat = opened();
+  for (const double value : {1e-20, -3.0, 1e34}) {
+    write("temperature_control", value);
+    const auto reading = thermostat->read();
+    ASSERT_FALSE(reading) << value;
+    EXPECT_EQ(reading.error().code, ErrorCode::kProtocol);
+    EXPECT_NE(reading.error().message.find("expected 5 ... 120 degC"), std::string::npos)
+        << reading.error().message;
+  }
+  write("temperature_control", 31.0);
+  EXPECT_TRUE(thermostat->read());
+}
+
+TEST_F(ModbusThermostatTest, ATargetThatRoundsBeyondALimitIsRefusedBeforeTheWire) {
+  spec("target").maximum = 60.06;
+  const auto thermostat = opened();
+  const Status status = thermostat->set_target(Celsius{60.055});  // 60.1 in tenths
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, ErrorCode::kLimit);
+  EXPECT_TRUE(far_.log.empty());
+}
+
+TEST_F(ModbusThermostatTest, TemperaturesThatStandStillAreStaleWhereTheyMayNot) {
+  device_.stuck_after = config::Seconds{3.0};
+  const auto thermostat = opened();
+  for (int second = 1; second < 3; ++second) {
+    clock_.sleep_for(1s);
+    EXPECT_TRUE(thermostat->read()) << second;
+  }
+  clock_.sleep_for(1s);
+  const auto reading = thermostat->read();
+  ASSERT_FALSE(reading);
+  EXPECT_EQ(reading.error().code, ErrorCode::kStale);
+  EXPECT_EQ(reading.error().message, "thermostat: no temperature has moved by a bit for 3.0 s");
+  write("temperature_ambient", 21.4);
+  EXPECT_TRUE(thermostat->read());
+}
+
 }  // namespace
 }  // namespace fogbench::drivers

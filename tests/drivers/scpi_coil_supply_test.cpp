@@ -135,6 +135,18 @@ TEST_F(ScpiCoilSupplyTest, AnOutputThatDoesNotFollowIsADeviceError) {
       "coil_vertical: was set to 2.000000 A but measures 0.000000 A, more than 0.004 A apart");
 }
 
+TEST_F(ScpiCoilSupplyTest, OneWrongReadBackIsForgiven) {
+  const auto supply = enabled();
+  stuck_ = true;
+  before_a_ = 0.0;
+  far_.before_write = [&](const std::string& text) {
+    if (text == "MEAS:CURR?") stuck_ = false;  // from the next question on
+  };
+  const Clock::Instant before = clock_.now();
+  EXPECT_TRUE(supply->set_current(Ampere{2.0}));
+  EXPECT_EQ(clock_.now() - before, 640ms);
+}
+
 TEST_F(ScpiCoilSupplyTest, ARefusalOfTheInstrumentIsADeviceErrorWithItsWords) {
   const auto supply = enabled();
   far_.obey = [&](const std::string&) { far_.errors.emplace_back("-222,\"Data out of range\""); };
@@ -157,7 +169,8 @@ TEST_F(ScpiCoilSupplyTest, MakesSafeByZeroReadBackAndOutputOff) {
 TEST_F(ScpiCoilSupplyTest, MakingSafeGoesOnAfterAFailureAndReportsTheFirst) {
   const auto supply = enabled();
   ASSERT_TRUE(supply->set_current(Ampere{3.0}));
-  far_.write_failures = {{ErrorCode::kTimeout, "no answer"}};
+  // Neither the zero nor the question whether it was heard gets through.
+  far_.write_failures = {{ErrorCode::kTimeout, "no answer"}, {ErrorCode::kDevice, "gone"}};
   const Status status = supply->make_safe();
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::kTimeout);

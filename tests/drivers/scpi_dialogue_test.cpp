@@ -96,12 +96,50 @@ TEST_F(ScpiDialogueTest, ALateAnswerIsForgottenAndTheQuestionPutAgain) {
   const int clears = far_.clears;
   EXPECT_EQ(*dialogue.query_number("MEAS:CURR?"), -1.112);
   EXPECT_EQ(far_.clears, clears + 1);
-  EXPECT_EQ(far_.sent, (std::vector<std::string>{"MEAS:CURR?", "MEAS:CURR?"}));
+  EXPECT_EQ(far_.sent, (std::vector<std::string>{"MEAS:CURR?", "SYST:ERR?", "MEAS:CURR?"}));
+}
+
+TEST_F(ScpiDialogueTest, AnAnswerToAnotherQuestionIsThrownAwayAndTheQuestionPutAgain) {
+  ScpiDialogue dialogue = opened();
+  far_.read_failures = {{ErrorCode::kProtocol, "the answer is to another request"}};
+  EXPECT_EQ(*dialogue.query_number("MEAS:CURR?"), -1.112);
+}
+
+TEST_F(ScpiDialogueTest, WhatAFailedQuestionLeavesInTheErrorQueueIsNotBlamedOnTheNextCommand) {
+  ScpiDialogue dialogue = opened();
+  far_.read_failures = {timeout_};
+  far_.errors = {"-200,\"Execution error\""};
+  EXPECT_TRUE(dialogue.query_number("MEAS:CURR?"));
+  const Status status = dialogue.command("OUTP ON");
+  EXPECT_TRUE(status) << status.error().message;
+}
+
+TEST_F(ScpiDialogueTest, AQuestionThatFailsTwiceSaysWhatTheErrorQueueHadAboutIt) {
+  ScpiDialogue dialogue = opened();
+  far_.answers.erase("MEAS:CURR?");
+  far_.errors = {"-200,\"Execution error\"", "-420,\"Query UNTERMINATED\""};
+  EXPECT_EQ(dialogue.query_number("MEAS:CURR?").error().message,
+            "coil: MEAS:CURR?: no answer (-200,\"Execution error\"; -420,\"Query "
+            "UNTERMINATED\")");
+  far_.answers["MEAS:CURR?"] = "0";
+  EXPECT_TRUE(dialogue.query_number("MEAS:CURR?"));
+  EXPECT_TRUE(dialogue.command("OUTP ON"));
+}
+
+TEST_F(ScpiDialogueTest, OneAnswerThatIsNoNumberIsForgiven) {
+  ScpiDialogue dialogue = opened();
+  far_.answers["MEAS:CURR?"] = "#@!";
+  int asked = 0;
+  far_.before_write = [&](const std::string& text) {
+    if (text == "MEAS:CURR?" && ++asked == 2) far_.answers["MEAS:CURR?"] = "1.5";
+  };
+  EXPECT_EQ(*dialogue.query_number("MEAS:CURR?"), 1.5);
 }
 
 TEST_F(ScpiDialogueTest, TwoLostAnswersAreATimeout) {
   ScpiDialogue dialogue = opened();
-  far_.read_failures = {timeout_, timeout_};
+  // To the question, to the look into the error queue, and both once more.
+  far_.read_failures = {timeout_, timeout_, timeout_, timeout_};
   const auto value = dialogue.query_number("MEAS:CURR?");
   ASSERT_FALSE(value);
   EXPECT_EQ(value.error().code, ErrorCode::kTimeout);
@@ -111,10 +149,47 @@ TEST_F(ScpiDialogueTest, TwoLostAnswersAreATimeout) {
 TEST_F(ScpiDialogueTest, ACommandIsSentOnceEvenWhenItsTransferFails) {
   ScpiDialogue dialogue = opened();
   far_.write_failures = {timeout_};
-  const Status status = dialogue.set(1.0);
+  const Status status = dialogue.command("OUTP ON");
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::kTimeout);
   EXPECT_TRUE(far_.sent.empty());
+}
+
+/// A supply that obeys "CURR x" and answers "CURR?".
+void obey_current(support::FakeScpi& far) {
+  far.answers["CURR?"] = "0";
+  far.obey = [&far](const std::string& text) { far.answers["CURR?"] = text.substr(5); };
+}
+
+TEST_F(ScpiDialogueTest, ASetThatWasLostIsSentAgainAfterAReadBack) {
+  device_.set_query = "CURR?";
+  ScpiDialogue dialogue = opened();
+  obey_current(far_);
+  far_.write_failures = {timeout_};
+  const Status status = dialogue.set(1.0);
+  ASSERT_TRUE(status) << status.error().message;
+  EXPECT_EQ(far_.sent, (std::vector<std::string>{"CURR?", "CURR 1.000000", "SYST:ERR?"}));
+}
+
+TEST_F(ScpiDialogueTest, ASetThatWasExecutedUnheardIsNotSentAgain) {
+  device_.set_query = "CURR?";
+  ScpiDialogue dialogue = opened();
+  obey_current(far_);
+  // Neither time that the error queue is asked for.
+  far_.read_failures = {timeout_, timeout_};
+  const Status status = dialogue.set(1.0);
+  ASSERT_TRUE(status) << status.error().message;
+  EXPECT_EQ(far_.sent,
+            (std::vector<std::string>{"CURR 1.000000", "SYST:ERR?", "SYST:ERR?", "CURR?"}));
+}
+
+TEST_F(ScpiDialogueTest, ASetThatWasRefusedIsNotSentAgain) {
+  device_.set_query = "CURR?";
+  ScpiDialogue dialogue = opened();
+  far_.obey = [&](const std::string&) { far_.errors = {"-222,\"Data out of range\""}; };
+  EXPECT_EQ(dialogue.set(1.0).error().code, ErrorCode::kDevice);
+  EXPECT_EQ(far_.sent.front(), "CURR 1.000000");
+  EXPECT_EQ(std::count(far_.sent.begin(), far_.sent.end(), "CURR 1.000000"), 1);
 }
 
 TEST_F(ScpiDialogueTest, AnUnpluggedInstrumentIsNotAskedAgain) {

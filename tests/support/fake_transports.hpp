@@ -124,6 +124,7 @@ struct FakeScpi {
   /// What the next reads fail with; the answer that was due is lost, as after a drained time-out.
   std::deque<Error> read_failures;
   std::deque<Error> write_failures;
+  std::function<void(const std::string&)> before_write;
   std::vector<std::string> sent;
   int clears = 0;
 
@@ -142,6 +143,7 @@ class FakeMessages final : public drivers::MessageTransport {
       far_.write_failures.pop_front();
       return failure;
     }
+    if (far_.before_write) far_.before_write(text);
     far_.sent.push_back(text);
     if (text == "SYST:ERR?") {
       due_ = far_.errors.empty() ? "0,\"No error\"" : far_.errors.front();
