@@ -49,5 +49,6 @@ void add_diagnose(CLI::App& app, Action& action);
 void add_allan(CLI::App& app, Action& action);
 void add_challenge(CLI::App& app, Action& action);
 void add_reveal(CLI::App& app, Action& action);
+void add_device(CLI::App& app, Action& action);
 
 }  // namespace fogbench::cli

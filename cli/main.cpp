@@ -35,6 +35,7 @@ void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_allan(app, action);
   fogbench::cli::add_challenge(app, action);
   fogbench::cli::add_reveal(app, action);
+  fogbench::cli::add_device(app, action);
 }
 
 int cannot_print() {

@@ -95,24 +95,25 @@ void ObjectReader::rest(std::map<std::string, double>& members, std::string_view
   members.clear();
   for (const auto& [key, member] : at_.value().items()) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-    if (ok_) ok_ = read_number(at_ / key, members[key], {});
+    ok_ = read_number(at_ / key, members[key], {}) && ok_;
   }
 }
 
 bool ObjectReader::finish() {
-  if (!ok_) return false;
   if (!open_) {
     for (const auto& [key, member] : at_.value().items()) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
       const std::string_view near = nearest_name(key, known_);
-      return (at_ / key).fail(
+      ok_ = (at_ / key).fail(
           near.empty() ? fmt::format("unknown key; expected one of {}", fmt::join(known_, ", "))
                        : fmt::format("unknown key; did you mean \"{}\"?", near));
     }
   }
-  if (missing_.empty()) return true;
-  return at_.fail(fmt::format("has no key \"{}\"; expected: {}", missing_.front().key,
-                              missing_.front().description));
+  for (const Missing& missing : missing_) {
+    ok_ =
+        at_.fail(fmt::format("has no key \"{}\"; expected: {}", missing.key, missing.description));
+  }
+  return ok_;
 }
 
 void SchemaWriter::tag(std::string_view key, std::string_view name) {

@@ -192,10 +192,9 @@ struct Codec<std::vector<T>> {
       return at.wrong(rule.least_items > 0 ? "a list that is not empty" : "a list");
     }
     out.assign(at.value().size(), T{});
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      if (!Codec<T>::read(at / i, out[i], rule)) return false;
-    }
-    return true;
+    bool ok = true;
+    for (std::size_t i = 0; i < out.size(); ++i) ok = Codec<T>::read(at / i, out[i], rule) && ok;
+    return ok;
   }
   static ordered_json schema(const Rule& rule) {
     ordered_json schema = {{"type", "array"}, {"items", Codec<T>::schema(rule)}};
@@ -254,16 +253,27 @@ struct Codec<std::map<std::string, T>> {
   }
 };
 
+/// Reads a whole file into `out`. Everything that is wrong, each in a line, as far as it can be
+/// told at once; empty when nothing is.
+template <class T>
+std::vector<Error> read_config(const std::filesystem::path& file, T& out) {
+  auto tree = read_json_file(file);
+  if (!tree) return {tree.error()};
+  if (tree->is_object()) tree->erase("$schema");
+  ReadState state{file, std::nullopt, {}};
+  if (Codec<T>::read(Place(*tree, state), out, {})) return {};
+  std::vector<Error> problems{*state.error};
+  problems.insert(problems.end(), state.further.begin(), state.further.end());
+  return problems;
+}
+
 /// Reads a whole file as a T. The key "$schema" is an editor's and is left alone.
 template <class T>
 Result<T> read_config(const std::filesystem::path& file) {
-  auto tree = read_json_file(file);
-  if (!tree) return tree.error();
-  if (tree->is_object()) tree->erase("$schema");
-  ReadState state{file, std::nullopt};
   T out{};
-  if (Codec<T>::read(Place(*tree, state), out, {})) return out;
-  return *state.error;
+  const auto problems = read_config(file, out);
+  if (problems.empty()) return out;
+  return problems.front();
 }
 
 }  // namespace fogbench::config

@@ -159,9 +159,11 @@ bool read_kind(const Place& at, DeviceFile& out) {
 bool check(const Place& at, const ModbusDevice& d) {
   const Place registers = at / "registers";
   if (!check_unique(registers, d.registers)) return false;
+  bool ok = true;
   for (std::size_t i = 0; i < d.registers.size(); ++i) {
-    if (!check_register(registers / i, d, i)) return false;
+    ok = check_register(registers / i, d, i) && ok;
   }
+  if (!ok) return false;
   if (!check_has(registers, d.registers,
                  {"temperature_working_1", "temperature_working_2", "temperature_control",
                   "temperature_ambient", "target", "mode", "boost_power", "normal_power"})) {
@@ -348,6 +350,10 @@ ordered_json Codec<DeviceFile>::write(const DeviceFile& device) {
 
 Result<DeviceFile> load_device(const std::filesystem::path& file) {
   return read_config<DeviceFile>(file);
+}
+
+std::vector<Error> check_device(const std::filesystem::path& file, DeviceFile& out) {
+  return read_config(file, out);
 }
 
 }  // namespace fogbench::config

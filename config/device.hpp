@@ -147,4 +147,7 @@ using DeviceFile = std::variant<ModbusDevice, ScpiDevice, HidDevice, FrameDevice
 /// Errors: kBadInput, one line with the file and the JSON pointer.
 Result<DeviceFile> load_device(const std::filesystem::path& file);
 
+/// The same, with every error at once instead of the first; empty when `out` has been read.
+std::vector<Error> check_device(const std::filesystem::path& file, DeviceFile& out);
+
 }  // namespace fogbench::config

@@ -64,7 +64,12 @@ bool Place::fail(std::string_view sentence) const {
 }
 
 bool Place::fail(const Error& error) const {
-  if (!state_.error) state_.error = error;
+  constexpr std::size_t kMost = 50;
+  if (!state_.error) {
+    state_.error = error;
+  } else if (state_.further.size() < kMost) {
+    state_.further.push_back(error);
+  }
   return false;
 }
 

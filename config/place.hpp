@@ -8,15 +8,17 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/result.hpp"
 
 namespace fogbench::config {
 
-/// Of one file's reading. Only the first error is kept.
+/// Of one file's reading. A file is read to its end, whatever is wrong in it.
 struct ReadState {
   const std::filesystem::path& file;
-  std::optional<Error> error;
+  std::optional<Error> error;  ///< the first one
+  std::vector<Error> further;  ///< the first few after it
 };
 
 /// A value (or its absence) and the way to it. A place refers to the one it was reached from, so it

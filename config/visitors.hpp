@@ -68,9 +68,8 @@ class ObjectReader {
                 const Rule& rule = {}) {
     known_.push_back(key);
     const Place child = at_ / key;
-    if (!ok_) return;
     if (child.present()) {
-      ok_ = Codec<std::decay_t<T>>::read(child, member, rule);
+      ok_ = Codec<std::decay_t<T>>::read(child, member, rule) && ok_;
     } else {
       missing_.push_back({key, description});
     }
@@ -80,21 +79,21 @@ class ObjectReader {
                 const Rule& rule = {}) {
     known_.push_back(key);
     const Place child = at_ / key;
-    if (ok_ && child.present()) ok_ = Codec<std::decay_t<T>>::read(child, member, rule);
+    if (child.present()) ok_ = Codec<std::decay_t<T>>::read(child, member, rule) && ok_;
   }
   /// An object that only groups keys: `fill` describes its inside.
   template <class Fill>
   void section(std::string_view key, std::string_view /*description*/, Fill fill) {
     known_.push_back(key);
     const Place child = at_ / key;
-    if (!ok_ || !child.present()) return;
+    if (!child.present()) return;
     if (!child.value().is_object()) {
       ok_ = child.wrong("an object");
       return;
     }
     ObjectReader inside(child);
     fill(inside);
-    ok_ = inside.finish();
+    ok_ = inside.finish() && ok_;
   }
   /// The key that says which of several shapes this object has; already looked at.
   void tag(std::string_view key, std::string_view /*name*/) { known_.push_back(key); }

@@ -39,8 +39,9 @@ bool is_self_test(std::string text) {
   return text.find("*TST") != std::string::npos;
 }
 
-/// A number as SCPI writes it ("+1.5", " -1.112E+00"); none when anything else is there.
-std::optional<double> parse_number(std::string_view text) {
+}  // namespace
+
+std::optional<double> parse_scpi_number(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && blank(text.back())) text.remove_suffix(1);
@@ -48,10 +49,9 @@ std::optional<double> parse_number(std::string_view text) {
   double value = 0.0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (!(std::abs(value) < kInfinity)) return std::nullopt;
   return value;
 }
-
-}  // namespace
 
 ScpiDialogue::ScpiDialogue(std::string name, const config::ScpiDevice& device,
                            std::unique_ptr<MessageTransport> transport)
@@ -145,8 +145,8 @@ Result<double> ScpiDialogue::query_number(const std::string& question) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const auto answer = query(question);
     if (!answer) return answer.error();
-    const auto value = parse_number(*answer);
-    if (value && std::abs(*value) < kInfinity) return *value;
+    const auto value = parse_scpi_number(*answer);
+    if (value) return *value;
     says = *answer;
   }
   return error(ErrorCode::kProtocol,
@@ -185,7 +185,7 @@ Result<std::string> ScpiDialogue::drain_errors(
   for (int i = 0; i < kMostErrors; ++i) {
     const auto entry = (this->*put)(error_query_);
     if (!entry) return entry.error();
-    const auto code = parse_number(std::string_view(*entry).substr(0, entry->find(',')));
+    const auto code = parse_scpi_number(std::string_view(*entry).substr(0, entry->find(',')));
     if (!code) {
       return error(ErrorCode::kProtocol,
                    fmt::format("{} answers \"{}\", expected a number and text", error_query_,

@@ -6,7 +6,9 @@
 // magnetises the gyro's shield.
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/device.hpp"
@@ -14,6 +16,10 @@
 #include "drivers/transport.hpp"
 
 namespace fogbench::drivers {
+
+/// A number as SCPI writes it ("+1.5", " -1.112E+00"); none when anything else is there, or one of
+/// its words for infinity and not-a-number.
+std::optional<double> parse_scpi_number(std::string_view text);
 
 class ScpiDialogue {
  public:

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/config/changed_file.hpp"
+#include "tests/support/source_tree.hpp"
 
 namespace fogbench::config {
 namespace {
@@ -171,6 +172,37 @@ TEST(LoadDevice, ReadsTheKvhFrame) {
   EXPECT_EQ(device.temperature->offset_bytes, 30);
   EXPECT_EQ(device.crc.initial, 0xFFFFFFFFU);
   EXPECT_EQ(device.sequence_modulus, 128);
+}
+
+TEST(CheckDevice, NamesEveryProblemAtOnce) {
+  ChangedFile file;
+  DeviceFile device;
+  const auto problems = check_device(file.write(R"({
+    "kind": "modbus", "name": "x", "unit_id": 300, "max_age": 2,
+    "registers": [{"name": "target", "address": -1}, {"name": "mode", "type": "int12"}],
+    "modes": {"off": 0, "boost": 1, "normal": 2},
+    "target_minimum_c": 0})"),
+                                     device);
+  std::string all;
+  for (const Error& problem : problems) {
+    EXPECT_EQ(problem.code, ErrorCode::kBadInput);
+    EXPECT_EQ(problem.message.find('\n'), std::string::npos);
+    all += problem.message + "\n";
+  }
+  EXPECT_EQ(problems.size(), 6U) << all;
+  for (const char* expected :
+       {"/unit_id: found 300", "/registers/0/address: found -1", "/registers/1/type: found",
+        "/registers/1: has no key \"address\"", "/max_age: unknown key; did you mean",
+        "has no key \"target_maximum_c\""}) {
+    EXPECT_NE(all.find(expected), std::string::npos) << expected << " in\n" << all;
+  }
+}
+
+TEST(CheckDevice, FindsNothingInAReadyOne) {
+  DeviceFile device;
+  EXPECT_TRUE(
+      check_device(tests::source_tree() / "config/devices/coil-kepco.json", device).empty());
+  EXPECT_TRUE(std::holds_alternative<ScpiDevice>(device));
 }
 
 }  // namespace
