@@ -6,12 +6,12 @@
 #include "cli/output.hpp"
 #include "config/codec.hpp"
 #include "config/describe_device.hpp"
+#include "config/paths.hpp"
+#include "drivers/frame_parser.hpp"
 #include "drivers/number_codec.hpp"
 
 namespace fogbench::cli {
 namespace {
-
-using Align = TextTable::Align;
 
 std::string bounds(const std::optional<double>& minimum, const std::optional<double>& maximum) {
   if (!minimum && !maximum) return "";
@@ -32,6 +32,7 @@ std::string age(const config::Seconds& max_age, const std::optional<config::Seco
 }
 
 std::string fields_text(const std::vector<config::FieldSpec>& fields) {
+  using Align = TextTable::Align;
   TextTable table({{"quantity", "", Align::kLeft},
                    {"bytes", ""},
                    {"type", "", Align::kLeft},
@@ -47,6 +48,7 @@ std::string fields_text(const std::vector<config::FieldSpec>& fields) {
 }
 
 std::string describe(const config::ModbusDevice& d) {
+  using Align = TextTable::Align;
   TextTable table({{"quantity", "", Align::kLeft},
                    {"register", ""},
                    {"type", "", Align::kLeft},
@@ -72,6 +74,7 @@ std::string describe(const config::ModbusDevice& d) {
 }
 
 std::string describe(const config::ScpiDevice& d) {
+  using Align = TextTable::Align;
   TextTable table({{"what", "", Align::kLeft}, {"is said as", "", Align::kLeft}});
   const auto add = [&table](const char* what, const std::string& text) {
     if (!text.empty()) table.add_row({what, text});
@@ -116,12 +119,29 @@ std::string describe(const config::FrameDevice& d) {
 
 }  // namespace
 
+Result<config::DeviceFile> read_device(const std::string& name) {
+  const auto file = config::find_config("devices", name);
+  if (!file) return file.error();
+  config::DeviceFile device;
+  std::vector<Error> problems = config::check_device(*file, device);
+  const auto* frame = std::get_if<config::FrameDevice>(&device);
+  if (problems.empty() && frame != nullptr) {
+    const Status layout = drivers::check_layout(*frame);
+    if (!layout) {
+      problems.push_back({ErrorCode::kBadInput, file->string() + ": " + layout.error().message});
+    }
+  }
+  if (problems.empty()) return device;
+  for (std::size_t i = 0; i + 1 < problems.size(); ++i) print_error(problems[i].message);
+  return problems.back();
+}
+
 std::string kind_of(const config::DeviceFile& device) {
   constexpr const char* kKinds[] = {"modbus", "scpi", "hid", "frame"};
   return kKinds[device.index()];
 }
 
-std::string describe(const config::DeviceFile& device) {
+std::string description_text(const config::DeviceFile& device) {
   return std::visit(
       [&](const auto& d) {
         return fmt::format("{}, {}: {}", d.name, kind_of(device), describe(d));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
@@ -10,8 +9,6 @@
 #include "cli/output.hpp"
 #include "config/codec.hpp"
 #include "config/describe_device.hpp"
-#include "config/paths.hpp"
-#include "drivers/frame_parser.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -21,31 +18,13 @@ struct CheckOptions {
   bool json = false;
 };
 
-/// All problems but the last one are printed here, the last one by main.
-Result<config::DeviceFile> read_device(const std::string& name) {
-  const auto file = config::find_config("devices", name);
-  if (!file) return file.error();
-  config::DeviceFile device;
-  std::vector<Error> problems = config::check_device(*file, device);
-  if (problems.empty()) {
-    if (const auto* frame = std::get_if<config::FrameDevice>(&device)) {
-      const Status layout = drivers::check_layout(*frame);
-      if (!layout)
-        problems.push_back({ErrorCode::kBadInput, file->string() + ": " + layout.error().message});
-    }
-  }
-  if (problems.empty()) return device;
-  for (std::size_t i = 0; i + 1 < problems.size(); ++i) print_error(problems[i].message);
-  return problems.back();
-}
-
 Result<ExitStatus> run_check(const CheckOptions& options) {
   const auto device = read_device(options.device);
   if (!device) return device.error();
   if (options.json) {
     print_json(config::Codec<config::DeviceFile>::write(*device));
   } else {
-    fmt::print("{}", describe(*device));
+    fmt::print("{}", description_text(*device));
   }
   return ExitStatus::kDone;
 }
