@@ -50,5 +50,7 @@ void add_allan(CLI::App& app, Action& action);
 void add_challenge(CLI::App& app, Action& action);
 void add_reveal(CLI::App& app, Action& action);
 void add_device(CLI::App& app, Action& action);
+/// Of `fogbench device`.
+void add_device_probe(CLI::App& device, Action& action);
 
 }  // namespace fogbench::cli

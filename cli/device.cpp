@@ -1,4 +1,5 @@
-// fogbench device: instruments as data. `check` reads a description, `probe` meets the instrument.
+// fogbench device: instruments as data. `check` reads a description, `probe` (device_probe.cpp)
+// meets the instrument.
 
 #include <fmt/format.h>
 
@@ -32,7 +33,8 @@ Result<ExitStatus> run_check(const CheckOptions& options) {
 }  // namespace
 
 void add_device(CLI::App& app, Action& action) {
-  CLI::App* device = app.add_subcommand("device", "Check the description of an instrument");
+  CLI::App* device = app.add_subcommand(
+      "device", "Check an instrument's description, or look at the instrument through it");
   device->require_subcommand(1);
   add_command<CheckOptions>(
       *device, action, "check", "Say what a description says, or everything that is wrong in it",
@@ -44,6 +46,7 @@ void add_device(CLI::App& app, Action& action) {
         command.add_flag("--json", options.json, "One JSON document on stdout");
       },
       run_check);
+  add_device_probe(*device, action);
 }
 
 }  // namespace fogbench::cli

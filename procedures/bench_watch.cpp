@@ -49,16 +49,22 @@ Status BenchWatch::start() {
 }
 
 Status BenchWatch::tick(Instant deadline) {
-  clock_.sleep_until(std::min(deadline, next_reading_));
+  sleep_until(std::min(deadline, next_reading_));
   has_new_row_ = false;
   const auto drained = drain();
   if (!drained) return drained;
   const Instant now = clock_.now();
-  if (now < next_reading_) return {};
+  if (now < next_reading_ || interrupted_()) return {};
   next_reading_ = std::max(next_reading_ + kPeriod, now);
   const auto read = read_slow_instruments();
   if (!read) return read;
   return check_temperature();
+}
+
+void BenchWatch::sleep_until(Instant deadline) {
+  while (clock_.now() < deadline && !interrupted_()) {
+    clock_.sleep_until(std::min(deadline, clock_.now() + kNap));
+  }
 }
 
 Status BenchWatch::drain() {
@@ -81,11 +87,13 @@ Status BenchWatch::read_slow_instruments() {
   Status outcome = thermostat ? check_new(thermostat_, thermostat->taken_at) : thermostat.error();
   row_.thermostat = outcome ? *thermostat : missing_thermostat();
   if (auto noted = note(thermostat_, outcome); !noted) return noted;
+  if (interrupted_()) return {};
 
   const auto field = bench_.magnetometer->read();
   outcome = field ? check_new(magnetometer_, field->taken_at) : field.error();
   row_.field = outcome ? *field : missing_field();
   if (auto noted = note(magnetometer_, outcome); !noted) return noted;
+  if (interrupted_()) return {};
 
   const auto read_coil = [&](drivers::CoilSupply& coil, Outage& outage, double& current_a) {
     const auto reading = coil.read();

@@ -11,8 +11,10 @@
 
 #include <array>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "config/bench.hpp"
 #include "drivers/clock.hpp"
@@ -32,10 +34,19 @@ class BenchWatch {
   /// How far above its limit a temperature may overshoot.
   static constexpr config::Celsius kOvershoot{2.0};
 
-  /// All must outlive the watch.
+  /// How often a sleep looks whether it is to be cut short: what an abort waits for, beyond the
+  /// instrument that is being spoken to.
+  static constexpr drivers::Clock::Duration kNap = std::chrono::milliseconds{5};
+
+  /// All must outlive the watch. `interrupted` cuts a tick short: it comes back at once, without
+  /// the readings that it has not begun.
   BenchWatch(const config::BenchConfig& config, drivers::Bench& bench, drivers::Clock& clock,
-             Recorder& recorder)
-      : config_(config), bench_(bench), clock_(clock), recorder_(recorder) {}
+             Recorder& recorder, std::function<bool()> interrupted)
+      : config_(config),
+        bench_(bench),
+        clock_(clock),
+        recorder_(recorder),
+        interrupted_(std::move(interrupted)) {}
 
   /// Waits for the stream's first frame, which is the zero of time: the gyro's power-on as far as
   /// the bench can tell. kTimeout when none comes.
@@ -74,6 +85,7 @@ class BenchWatch {
     std::optional<Instant> since;
     Instant last_taken{Instant::min()};
   };
+  void sleep_until(Instant deadline);
   Status drain();
   Status read_slow_instruments();
   /// Keeps count of the outage; an error when it has lasted too long or cannot be recorded.
@@ -85,6 +97,7 @@ class BenchWatch {
   drivers::Bench& bench_;
   drivers::Clock& clock_;
   Recorder& recorder_;
+  std::function<bool()> interrupted_;
   drivers::GyroBlock frames_;
   MonitorRow row_;
   std::deque<MonitorRow> recent_;

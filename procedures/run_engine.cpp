@@ -24,7 +24,8 @@ class RunEngine::Run {
   Run(RunEngine& engine, const Plan& plan)
       : engine_(engine),
         plan_(plan),
-        watch_(engine.config_, engine.bench_, engine.clock_, engine.recorder_),
+        watch_(engine.config_, engine.bench_, engine.clock_, engine.recorder_,
+               [&engine] { return engine.abort_requested_.load(); }),
         session_(
             engine.config_, engine.bench_, engine.operator_, watch_,
             [this] { return after_tick(); }, [this](const Point& point) { return record(point); }),

@@ -65,9 +65,9 @@ class RunEngine {
   /// failed or aborted run is a RunSummary that says so. An engine may run again after an end.
   Result<RunSummary> run(const Plan& plan, const RunHeader& header);
 
-  // Thread- and signal-safe requests; take effect at the next tick (abort) or before the next step
-  // outside an indivisible block (pause). One asked for before run() holds for that run, and for no
-  // later one.
+  // Thread- and signal-safe requests; take effect within BenchWatch::kNap (abort) or before the
+  // next step outside an indivisible block (pause). One asked for before run() holds for that run,
+  // and for no later one.
   void request_abort() { abort_requested_ = true; }
   void request_pause() { pause_requested_ = true; }
   void request_resume() { pause_requested_ = false; }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "procedures/bench_watch.hpp"
 #include "tests/procedures/engine_fixture.hpp"
 
 namespace fogbench::procedures {
@@ -214,6 +215,36 @@ TEST(Interruption, AnAbortTakesEffectWithinASecondAtAnyStep) {
     EXPECT_TRUE(rig.plant.safe()) << at;
     EXPECT_LE(rig.plant.clock.now() - asked, std::chrono::seconds{1}) << at;
   }
+}
+
+/// The bench's clock, while somebody asks for an abort at a moment that no tick falls on.
+class ClockWithAnAbort final : public drivers::Clock {
+ public:
+  ClockWithAnAbort(drivers::Clock& clock, Instant at) : clock_(clock), at_(at) {}
+  Instant now() const override { return clock_.now(); }
+  WallTime wall_now() const override { return clock_.wall_now(); }
+  void sleep_until(Instant deadline) override {
+    clock_.sleep_until(deadline);
+    if (engine != nullptr && now() >= at_) engine->request_abort();
+  }
+  RunEngine* engine = nullptr;
+
+ private:
+  drivers::Clock& clock_;
+  Instant at_;
+};
+
+TEST(Interruption, AnAbortCutsASleepShort) {
+  Rig rig;
+  const drivers::Clock::Instant at{std::chrono::milliseconds{5423}};
+  ClockWithAnAbort clock(rig.plant.clock, at);
+  RunEngine engine{rig.config, rig.bench, clock, rig.person, rig.log};
+  clock.engine = &engine;
+  const auto summary = engine.run(rig.plan({wait(30.0)}), RunHeader{});
+  ASSERT_TRUE(summary) << summary.error().message;
+  EXPECT_EQ(summary->end.outcome, RunOutcome::kAborted);
+  EXPECT_TRUE(rig.plant.safe());
+  EXPECT_LE(rig.plant.clock.now() - at, BenchWatch::kNap);
 }
 
 TEST(Interruption, AnAbortEndsAPauseToo) {

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "config/bench.hpp"
 #include "drivers/open_bench.hpp"
 #include "procedures/expand.hpp"
 #include "simulator/simulated_bench.hpp"
@@ -24,14 +23,6 @@ class NobodyThere final : public drivers::Operator {
  public:
   Result<bool> confirm(const std::string&) override { return false; }
 };
-
-/// The ready bench, without lifts and cars: every run is to be the same but for its fault.
-config::BenchConfig quiet_bench() {
-  auto bench = config::load_bench(tests::source_tree() / "config/benches/simulated.json");
-  EXPECT_TRUE(bench) << bench.error().message;
-  bench->simulation.magnetic.ambient_steps_per_h = 0.0;
-  return *bench;
-}
 
 procedures::Plan make_short_plan(const config::BenchConfig& bench) {
   const auto no_calls = [](const std::string& name, const config::ProcedureConfig&) {
@@ -61,9 +52,17 @@ std::string off(const procedures::Point& p, const char* what, double value, doub
 
 }  // namespace
 
-Trial run_with(const std::optional<config::FaultSpec>& fault) {
-  static const config::BenchConfig config = quiet_bench();
-  static const procedures::Plan plan = make_short_plan(config);
+config::BenchConfig quiet_bench() {
+  static const auto bench =
+      config::load_bench(tests::source_tree() / "config/benches/simulated.json");
+  EXPECT_TRUE(bench) << bench.error().message;
+  config::BenchConfig quiet = *bench;
+  quiet.simulation.magnetic.ambient_steps_per_h = 0.0;
+  return quiet;
+}
+
+Trial run_with(const std::optional<config::FaultSpec>& fault, const config::BenchConfig& config) {
+  const procedures::Plan plan = make_short_plan(config);
   config::ScenarioConfig scenario;
   scenario.noise.angle_random_walk_deg_per_sqrt_h = 0.001;
   scenario.terms = {{"bias", kBiasDegPerH}};

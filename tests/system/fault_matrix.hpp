@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "config/bench.hpp"
 #include "config/scenario.hpp"
 #include "procedures/run_engine.hpp"
 #include "tests/support/memory_recorder.hpp"
@@ -20,9 +21,13 @@ struct Trial {
   double ended_s = 0.0;
 };
 
+/// The ready bench, without lifts and cars: every run is to be the same but for its fault.
+config::BenchConfig quiet_bench();
+
 /// Every instrument takes part: heat, average, null the field, sweep OX, turn, null, sweep OZ,
 /// heaters off, average. About three minutes of bench time.
-Trial run_with(const std::optional<config::FaultSpec>& fault);
+Trial run_with(const std::optional<config::FaultSpec>& fault,
+               const config::BenchConfig& bench = quiet_bench());
 
 /// How far a point may be from the truth that this bench has; the first point that is further, in a
 /// sentence. Empty when all are right.
