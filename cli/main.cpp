@@ -23,6 +23,7 @@ constexpr auto kFooter =
 void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_plan(app, action);
   fogbench::cli::add_dry_run(app, action);
+  fogbench::cli::add_simulate(app, action);
   fogbench::cli::add_runs(app, action);
   fogbench::cli::add_show(app, action);
   fogbench::cli::add_export(app, action);

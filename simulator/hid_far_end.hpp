@@ -27,6 +27,7 @@ class HidFarEnd final : public drivers::HidTransport {
                                   drivers::Clock::Duration timeout) override;
   /// Takes every output report and does nothing.
   Status write_report(std::span<const std::uint8_t> report) override;
+  bool plugged() const { return line_.plugged(); }
 
  private:
   /// Number of the newest report that exists; 0 is none.

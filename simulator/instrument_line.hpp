@@ -38,6 +38,8 @@ class InstrumentLine {
   /// kTimeout, at the deadline of the last request.
   Error wait_in_vain();
 
+  /// False while its plug is out.
+  bool plugged() const { return !fault(FaultKind::kUnplug); }
   bool fault(FaultKind kind) const { return faults_.active(kind, plant_->now_s()); }
   Plant& plant() { return *plant_; }
   const Plant& plant() const { return *plant_; }

@@ -50,14 +50,15 @@ ModbusFarEnd::ModbusFarEnd(const config::ModbusDevice& device, InstrumentLine li
   for (const RegisterSpec& spec : device_.registers) by_address_[spec.address] = &spec;
 }
 
-Error ModbusFarEnd::exception(int code) const {
+Error ModbusFarEnd::exception(int code) {
+  last_exception_ = code;
   constexpr const char* kMeaning[] = {"", "illegal function", "illegal data address",
                                       "illegal data value", "device failure"};
   return line_.error(ErrorCode::kDevice,
                      fmt::format("Modbus exception {} ({})", code, kMeaning[code]));
 }
 
-Status ModbusFarEnd::check_count(std::size_t count) const {
+Status ModbusFarEnd::check_count(std::size_t count) {
   if (line_.fault(FaultKind::kException)) return exception(kDeviceFailure);
   constexpr std::size_t kMost = 125;  // Of the standard's function 3.
   if (count == 0 || count > kMost) return exception(kIllegalValue);
@@ -73,6 +74,7 @@ std::string_view ModbusFarEnd::write_operation(std::uint16_t address) const {
 
 Status ModbusFarEnd::read_registers(std::uint16_t address, std::span<std::uint16_t> out) {
   line_.begin("read");
+  last_exception_ = 0;
   if (Status s = line_.request(kTransaction, kTimeout); !s) return s;
   if (Status s = check_count(out.size()); !s) return s;
   for (std::size_t i = 0; i < out.size();) {
@@ -89,6 +91,7 @@ Status ModbusFarEnd::read_registers(std::uint16_t address, std::span<std::uint16
 
 Status ModbusFarEnd::write_registers(std::uint16_t address, std::span<const std::uint16_t> values) {
   line_.begin(write_operation(address));
+  last_exception_ = 0;
   if (Status s = line_.request(kTransaction, kTimeout); !s) return s;
   if (Status s = check_count(values.size()); !s) return s;
   for (std::size_t i = 0; i < values.size();) {

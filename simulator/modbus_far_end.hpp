@@ -29,12 +29,15 @@ class ModbusFarEnd final : public drivers::ModbusTransport {
 
   Status read_registers(std::uint16_t address, std::span<std::uint16_t> out) override;
   Status write_registers(std::uint16_t address, std::span<const std::uint16_t> values) override;
+  /// Of the last call; 0 when it did not end with an exception.
+  int last_exception() const { return last_exception_; }
+  bool plugged() const { return line_.plugged(); }
 
  private:
   /// What the scenario calls a write to that address.
   std::string_view write_operation(std::uint16_t address) const;
-  Status check_count(std::size_t count) const;
-  Error exception(int code) const;
+  Status check_count(std::size_t count);
+  Error exception(int code);
   double value_of(const config::RegisterSpec& spec) const;
   Status apply(const config::RegisterSpec& spec, double value);
   void encode(const config::RegisterSpec& spec, std::span<std::uint16_t> words);
@@ -42,6 +45,7 @@ class ModbusFarEnd final : public drivers::ModbusTransport {
   const config::ModbusDevice device_;
   InstrumentLine line_;
   std::map<std::uint16_t, const config::RegisterSpec*> by_address_;
+  int last_exception_ = 0;
   std::map<std::string, double> memory_;  ///< last values, of registers that are plain memory too
 };
 

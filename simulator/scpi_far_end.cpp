@@ -166,6 +166,14 @@ Result<std::string> ScpiFarEnd::read(drivers::Clock::Duration timeout) {
   return text;
 }
 
+Result<std::uint8_t> ScpiFarEnd::read_status_byte() {
+  if (Status s = line_.request(0ms, kWriteTimeout); !s) return s.error();
+  constexpr std::uint8_t kMessageAvailable = 0x10;
+  constexpr std::uint8_t kErrorAvailable = 0x04;
+  return static_cast<std::uint8_t>((answer_ ? kMessageAvailable : 0) |
+                                   (errors_.empty() ? 0 : kErrorAvailable));
+}
+
 Status ScpiFarEnd::clear() {
   line_.begin("clear");
   if (Status s = line_.request(kMessage, kWriteTimeout); !s) return s;

@@ -7,6 +7,7 @@
 // range, -410 a query whose answer was not read, -420 a read with nothing to say. After -222 the
 // output stays as it was.
 
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -51,6 +52,9 @@ class ScpiFarEnd final : public drivers::MessageTransport {
   Status write(std::string_view message) override;
   Result<std::string> read(drivers::Clock::Duration timeout) override;
   Status clear() override;
+  /// As a serial poll reads it, IEEE 488.2: bit 4 an answer waits, bit 2 an error is queued.
+  Result<std::uint8_t> read_status_byte();
+  bool plugged() const { return line_.plugged(); }
 
  private:
   /// What the scenario calls this message; a message and the reading of its answer are one

@@ -1,115 +1,20 @@
 #include "simulator/simulated_bench.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <memory>
-#include <string>
-#include <string_view>
-
-#include "simulator/gyro_far_end.hpp"
-#include "simulator/hid_far_end.hpp"
-#include "simulator/modbus_far_end.hpp"
-#include "simulator/scpi_far_end.hpp"
+#include "simulator/far_ends.hpp"
 
 namespace fogbench::simulator {
-namespace {
-
-constexpr std::array<std::string_view, 6> kDevices = {
-    "thermostat", "coil_horizontal", "coil_vertical", "magnetometer", "turntable", "gyro"};
-
-Status check_devices(const std::vector<config::FaultSpec>& faults) {
-  for (std::size_t i = 0; i < faults.size(); ++i) {
-    if (std::find(kDevices.begin(), kDevices.end(), faults[i].device) != kDevices.end()) continue;
-    return Error{ErrorCode::kBadInput,
-                 fmt::format("scenario: /faults/{}: no device \"{}\"; the bench has {}", i,
-                             faults[i].device, fmt::join(kDevices, ", "))};
-  }
-  return {};
-}
-
-/// Makes the lines to the request-and-answer instruments.
-class Lines {
- public:
-  Lines(const config::ScenarioConfig& scenario, std::uint64_t seed, std::shared_ptr<Plant> plant,
-        drivers::Clock& clock)
-      : scenario_(scenario), seed_(seed), plant_(std::move(plant)), clock_(clock) {}
-
-  Result<InstrumentLine> to(const std::string& device,
-                            std::initializer_list<FaultKind> possible) const {
-    Result<FaultSchedule> faults = FaultSchedule::create(scenario_.faults, device, possible);
-    if (!faults) return faults.error();
-    return InstrumentLine(device, plant_, clock_, *std::move(faults),
-                          derive_seed(seed_, device + " garbage"));
-  }
-
- private:
-  const config::ScenarioConfig& scenario_;
-  std::uint64_t seed_;
-  std::shared_ptr<Plant> plant_;
-  drivers::Clock& clock_;
-};
-
-}  // namespace
 
 Result<drivers::Transports> simulate_bench(const config::BenchConfig& config,
                                            const config::ScenarioConfig& scenario,
                                            std::uint64_t seed, drivers::Clock& clock) {
-  if (!config.turntable.motorised || !config.turntable.device) {
-    return Error{ErrorCode::kBadInput,
-                 "bench: /turntable/motorised is false, expected true: nobody turns the simulated "
-                 "gyro by hand"};
-  }
-  if (Status s = check_devices(scenario.faults); !s) return s.error();
-  Result<std::unique_ptr<Plant>> made = Plant::create(config, scenario, seed, clock);
-  if (!made) return made.error();
-  const std::shared_ptr<Plant> plant = *std::move(made);
-  const Lines lines(scenario, seed, plant, clock);
-
-  drivers::Transports transports;
-  {
-    Result<InstrumentLine> line = lines.to("thermostat", ModbusFarEnd::kFaults);
-    if (!line) return line.error();
-    transports.thermostat =
-        std::make_unique<ModbusFarEnd>(config.thermostat.device, *std::move(line));
-  }
-  const auto supply =
-      [&](const std::string& name, const config::CoilConfig& coil,
-          MagneticPhysics::Pair pair) -> Result<std::unique_ptr<drivers::MessageTransport>> {
-    Result<InstrumentLine> line = lines.to(name, ScpiFarEnd::kFaults);
-    if (!line) return line.error();
-    return std::unique_ptr<drivers::MessageTransport>(std::make_unique<ScpiFarEnd>(
-        coil.device,
-        make_supply_output(coil.device, pair, config.simulation.magnetic.supply_bits,
-                           derive_seed(seed, name)),
-        *std::move(line)));
-  };
-  auto horizontal = supply("coil_horizontal", config.coil_horizontal, MagneticPhysics::kHorizontal);
-  if (!horizontal) return horizontal.error();
-  transports.coil_horizontal = *std::move(horizontal);
-  auto vertical = supply("coil_vertical", config.coil_vertical, MagneticPhysics::kVertical);
-  if (!vertical) return vertical.error();
-  transports.coil_vertical = *std::move(vertical);
-  {
-    Result<InstrumentLine> line = lines.to("turntable", ScpiFarEnd::kFaults);
-    if (!line) return line.error();
-    transports.turntable = std::make_unique<ScpiFarEnd>(*config.turntable.device,
-                                                        make_turntable_output(), *std::move(line));
-  }
-  {
-    Result<InstrumentLine> line = lines.to("magnetometer", HidFarEnd::kFaults);
-    if (!line) return line.error();
-    transports.magnetometer =
-        std::make_unique<HidFarEnd>(config.magnetometer.device, config.simulation.magnetic,
-                                    *std::move(line), derive_seed(seed, "magnetometer"));
-  }
-  Result<FaultSchedule> faults =
-      FaultSchedule::create(scenario.faults, "gyro", GyroFarEnd::kFaults);
-  if (!faults) return faults.error();
-  transports.gyro = std::make_unique<GyroFarEnd>(config.gyro.device, scenario.noise, plant,
-                                                 *std::move(faults), derive_seed(seed, "gyro"));
-  return transports;
+  Result<FarEnds> ends = make_far_ends(config, scenario, seed, clock);
+  if (!ends) return ends.error();
+  return drivers::Transports{.thermostat = std::move(ends->thermostat),
+                             .coil_horizontal = std::move(ends->coil_horizontal),
+                             .coil_vertical = std::move(ends->coil_vertical),
+                             .magnetometer = std::move(ends->magnetometer),
+                             .turntable = std::move(ends->turntable),
+                             .gyro = std::move(ends->gyro)};
 }
 
 }  // namespace fogbench::simulator

@@ -32,6 +32,8 @@ class Process {
   void signal(int number) const;
   /// Waits until standard output holds `text`; false when the program ended or time ran out.
   bool wait_for_output(const std::string& text, std::chrono::seconds timeout);
+  /// What it has printed by then.
+  const std::string& output() const { return finished_.out; }
   /// Waits for the end; a program that outlives the timeout is killed.
   Finished wait(std::chrono::seconds timeout = std::chrono::seconds(120));
 

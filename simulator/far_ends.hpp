@@ -1,0 +1,31 @@
+#pragma once
+// The far ends of all of a simulated bench's instruments, over one plant.
+
+#include <cstdint>
+#include <memory>
+
+#include "config/bench.hpp"
+#include "config/scenario.hpp"
+#include "simulator/gyro_far_end.hpp"
+#include "simulator/hid_far_end.hpp"
+#include "simulator/modbus_far_end.hpp"
+#include "simulator/scpi_far_end.hpp"
+
+namespace fogbench::simulator {
+
+/// They share the plant and keep it alive; none may be used from two threads at once.
+struct FarEnds {
+  std::unique_ptr<ModbusFarEnd> thermostat;
+  std::unique_ptr<ScpiFarEnd> coil_horizontal;
+  std::unique_ptr<ScpiFarEnd> coil_vertical;
+  std::unique_ptr<HidFarEnd> magnetometer;
+  std::unique_ptr<ScpiFarEnd> turntable;
+  std::unique_ptr<GyroFarEnd> gyro;
+};
+
+/// As simulate_bench, which puts them behind the drivers' transports.
+Result<FarEnds> make_far_ends(const config::BenchConfig& config,
+                              const config::ScenarioConfig& scenario, std::uint64_t seed,
+                              drivers::Clock& clock);
+
+}  // namespace fogbench::simulator
