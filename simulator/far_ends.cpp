@@ -28,15 +28,19 @@ Status check_devices(const std::vector<config::FaultSpec>& faults) {
 class Lines {
  public:
   Lines(const config::ScenarioConfig& scenario, std::uint64_t seed, std::shared_ptr<Plant> plant,
-        drivers::Clock& clock)
-      : scenario_(scenario), seed_(seed), plant_(std::move(plant)), clock_(clock) {}
+        drivers::Clock& clock, drivers::Clock::Duration late_by)
+      : scenario_(scenario),
+        seed_(seed),
+        plant_(std::move(plant)),
+        clock_(clock),
+        late_by_(late_by) {}
 
   Result<InstrumentLine> to(const std::string& device,
                             std::initializer_list<FaultKind> possible) const {
     Result<FaultSchedule> faults = FaultSchedule::create(scenario_.faults, device, possible);
     if (!faults) return faults.error();
     return InstrumentLine(device, plant_, clock_, *std::move(faults),
-                          derive_seed(seed_, device + " garbage"));
+                          derive_seed(seed_, device + " garbage"), late_by_);
   }
 
  private:
@@ -44,13 +48,14 @@ class Lines {
   std::uint64_t seed_;
   std::shared_ptr<Plant> plant_;
   drivers::Clock& clock_;
+  drivers::Clock::Duration late_by_;
 };
 
 }  // namespace
 
 Result<FarEnds> make_far_ends(const config::BenchConfig& config,
                               const config::ScenarioConfig& scenario, std::uint64_t seed,
-                              drivers::Clock& clock) {
+                              drivers::Clock& clock, drivers::Clock::Duration late_by) {
   if (!config.turntable.motorised || !config.turntable.device) {
     return Error{ErrorCode::kBadInput,
                  "bench: /turntable/motorised is false, expected true: nobody turns the simulated "
@@ -60,7 +65,7 @@ Result<FarEnds> make_far_ends(const config::BenchConfig& config,
   Result<std::unique_ptr<Plant>> made = Plant::create(config, scenario, seed, clock);
   if (!made) return made.error();
   const std::shared_ptr<Plant> plant = *std::move(made);
-  const Lines lines(scenario, seed, plant, clock);
+  const Lines lines(scenario, seed, plant, clock, late_by);
 
   FarEnds ends;
   {

@@ -23,9 +23,10 @@ struct FarEnds {
   std::unique_ptr<GyroFarEnd> gyro;
 };
 
-/// As simulate_bench, which puts them behind the drivers' transports.
+/// As simulate_bench, which puts them behind the drivers' transports. A late answer comes `late_by`
+/// after its deadline; with 0 it does not come at all, as for a driver that has stopped waiting.
 Result<FarEnds> make_far_ends(const config::BenchConfig& config,
                               const config::ScenarioConfig& scenario, std::uint64_t seed,
-                              drivers::Clock& clock);
+                              drivers::Clock& clock, drivers::Clock::Duration late_by = {});
 
 }  // namespace fogbench::simulator

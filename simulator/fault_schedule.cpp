@@ -56,4 +56,8 @@ bool FaultSchedule::active(FaultKind kind, double time_s) const {
   });
 }
 
+bool FaultSchedule::unplugged(double time_s) const {
+  return active(FaultKind::kUnplug, time_s);
+}
+
 }  // namespace fogbench::simulator

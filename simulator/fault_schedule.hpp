@@ -26,6 +26,8 @@ class FaultSchedule {
   void begin(std::string_view operation);
   /// In the present operation, at that time since power-on.
   bool active(FaultKind kind, double time_s) const;
+  /// Whether the plug is out at that time, not only for one operation.
+  bool unplugged(double time_s) const;
   bool empty() const { return faults_.empty(); }
 
  private:

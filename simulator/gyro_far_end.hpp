@@ -39,7 +39,7 @@ class GyroFarEnd final : public drivers::SerialTransport {
   Result<std::size_t> read_some(std::span<std::byte> out) override;
   /// Takes every command and does nothing.
   Status write(std::span<const std::byte> bytes) override;
-  bool plugged() const { return !faults_.active(FaultKind::kUnplug, plant_->now_s()); }
+  bool plugged() const { return !faults_.unplugged(plant_->now_s()); }
 
  private:
   /// Frames complete by now.

@@ -16,9 +16,11 @@ Status InstrumentLine::request(drivers::Clock::Duration takes, drivers::Clock::D
 }
 
 Status InstrumentLine::answer() {
-  if (fault(FaultKind::kLateAnswer) || fault(FaultKind::kSilentExecution)) {
+  const bool late = fault(FaultKind::kLateAnswer);
+  if (fault(FaultKind::kSilentExecution) || (late && late_by_ == drivers::Clock::Duration{})) {
     return wait_in_vain();
   }
+  if (late) clock_.sleep_until(deadline_ + late_by_);
   if (fault(FaultKind::kBadChecksum)) {
     return error(ErrorCode::kProtocol, "the answer's check value is wrong");
   }

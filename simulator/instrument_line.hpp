@@ -17,11 +17,14 @@ namespace fogbench::simulator {
 
 class InstrumentLine {
  public:
+  /// A late answer comes `late_by` after the request's deadline; with 0 nobody is there any more
+  /// to hear it.
   InstrumentLine(std::string name, std::shared_ptr<Plant> plant, drivers::Clock& clock,
-                 FaultSchedule faults, std::uint64_t seed)
+                 FaultSchedule faults, std::uint64_t seed, drivers::Clock::Duration late_by = {})
       : name_(std::move(name)),
         plant_(std::move(plant)),
         clock_(clock),
+        late_by_(late_by),
         faults_(std::move(faults)),
         random_(seed) {}
 
@@ -32,14 +35,14 @@ class InstrumentLine {
   /// On success the instrument executes it, on the plant of that moment. kUnplugged while
   /// unplugged, kTimeout after `timeout` while the instrument hears nothing.
   Status request(drivers::Clock::Duration takes, drivers::Clock::Duration timeout);
-  /// The answer travels back: kTimeout at the request's deadline while answers are late or lost,
-  /// kProtocol while they arrive broken.
+  /// The answer travels back: kTimeout at the request's deadline while answers are lost, or late
+  /// and awaited by nobody; kProtocol while they arrive broken.
   Status answer();
   /// kTimeout, at the deadline of the last request.
   Error wait_in_vain();
 
-  /// False while its plug is out.
-  bool plugged() const { return !fault(FaultKind::kUnplug); }
+  /// False while its plug is out, whoever asks; not for one that an operation pulls.
+  bool plugged() const { return !faults_.unplugged(plant_->now_s()); }
   bool fault(FaultKind kind) const { return faults_.active(kind, plant_->now_s()); }
   Plant& plant() { return *plant_; }
   const Plant& plant() const { return *plant_; }
@@ -55,6 +58,7 @@ class InstrumentLine {
   std::string name_;
   std::shared_ptr<Plant> plant_;  // Shared: the last far end to go takes the plant with it.
   drivers::Clock& clock_;
+  drivers::Clock::Duration late_by_;
   drivers::Clock::Instant deadline_{};
   FaultSchedule faults_;
   RandomEngine random_;  ///< of garbage only

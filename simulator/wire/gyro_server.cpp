@@ -29,6 +29,7 @@ void GyroServer::serve(const PollSet&) {
 
 bool GyroServer::make_frames() {
   const Result<std::size_t> count = far_end_.read_some(std::as_writable_bytes(std::span(buffer_)));
+  if (!count) terminal_.unplug();  // This frame pulled the plug.
   begin_ = 0;
   end_ = count ? *count : 0;
   return end_ > 0;

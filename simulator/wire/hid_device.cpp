@@ -103,7 +103,12 @@ UsbTransfer HidUsbDevice::give(std::size_t most) {
   if (clock_.now() < next_) return UsbTransfer::busy_until(next_);
   Bytes report(report_.size());
   const Result<std::size_t> count = far_end_.read_report(report, period_);
-  next_ = clock_.take_due();  // Without a report, when the next is due.
+  const drivers::Clock::Instant now = clock_.take_due();
+  if (count && next_ != drivers::Clock::Instant{}) {
+    next_ += ((now - next_) / period_ + 1) * period_;  // The far end is not asked in vain.
+  } else {
+    next_ = now;  // Without a report, this is when the next is due.
+  }
   if (!count) {
     const bool gone = count.error().code == ErrorCode::kDevice;
     return gone ? UsbTransfer::in_state(State::kGone) : UsbTransfer::busy_until(next_);

@@ -67,6 +67,10 @@ void ModbusRtuServer::execute(const ModbusFrame& frame) {
   constexpr std::uint8_t kEverybody = 0;  // is written to and does not answer
   if (frame.unit != unit_.id() && frame.unit != kEverybody) return;
   const ModbusAnswer answer = unit_.execute(frame.content);
+  if (answer.gone) {
+    forget();
+    return terminal_.unplug();
+  }
   if (frame.unit == kEverybody || answer.content.empty()) return;
   answer_ = encode_modbus_rtu(frame.unit, answer.content);
   if (answer.spoilt) answer_.back() ^= 0x01U;

@@ -48,21 +48,22 @@ bool ModbusTcpServer::serve(Client& client, const PollSet& happened) {
     if (!parsed) return false;
     if (!*parsed) return true;
     connection.drop_input((*parsed)->size);
-    execute(client, **parsed);
+    if (!execute(client, **parsed)) return false;
   }
   return true;
 }
 
-void ModbusTcpServer::execute(Client& client, const ModbusFrame& frame) {
+bool ModbusTcpServer::execute(Client& client, const ModbusFrame& frame) {
   // The messaging guide's ways to say "whoever listens here", beside the unit's own number.
   constexpr std::uint8_t kNobodyElse = 0xFF;
-  if (frame.unit != unit_.id() && frame.unit != kNobodyElse && frame.unit != 0) return;
+  if (frame.unit != unit_.id() && frame.unit != kNobodyElse && frame.unit != 0) return true;
   const ModbusAnswer answer = unit_.execute(frame.content);
-  if (answer.content.empty()) return;
+  if (answer.content.empty()) return !answer.gone;
   // TCP checks the bytes itself: what is broken is to whom the answer belongs.
   const auto transaction = static_cast<std::uint16_t>(frame.transaction ^ (answer.spoilt ? 1 : 0));
   client.answer = encode_modbus_tcp(transaction, frame.unit, answer.content);
   client.due = answer.due;
+  return true;
 }
 
 }  // namespace fogbench::simulator

@@ -38,7 +38,8 @@ class ModbusTcpServer final : public Server {
 
   /// False when the connection is to be closed.
   bool serve(Client& client, const PollSet& happened);
-  void execute(Client& client, const ModbusFrame& frame);
+  /// False when it pulled the plug.
+  bool execute(Client& client, const ModbusFrame& frame);
 
   std::optional<TcpListener> listener_;  ///< none while unplugged
   const std::string address_;

@@ -20,6 +20,8 @@ ModbusAnswer ModbusUnit::execute(ByteView content) {
     answer.content = encode_modbus_answer(request, values);
   } else if (const int exception = far_end_.last_exception(); exception != 0) {
     answer.content = encode_modbus_exception(content[0], static_cast<std::uint8_t>(exception));
+  } else {
+    answer.gone = done.error().code == ErrorCode::kDevice;
   }
   return answer;
 }

@@ -12,6 +12,7 @@ namespace fogbench::simulator {
 struct ModbusAnswer {
   Bytes content;        ///< function code first; empty when the unit is silent
   bool spoilt = false;  ///< it arrives broken
+  bool gone = false;    ///< the request pulled the plug
   drivers::Clock::Instant due{};
 };
 

@@ -53,6 +53,11 @@ bool ScpiLineServer::take_line() {
   input_.erase(input_.begin(), end + 1);
   const Status taken = far_end_.write(line);
   ready_at_ = clock_.take_due();
+  if (!taken && taken.error().code == ErrorCode::kDevice) {  // This line pulled the plug.
+    forget();
+    terminal_.unplug();
+    return false;
+  }
   constexpr std::uint8_t kMessageAvailable = 0x10;
   const Result<std::uint8_t> status = far_end_.read_status_byte();
   if (!taken || !status || (*status & kMessageAvailable) == 0) return true;

