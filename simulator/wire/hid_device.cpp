@@ -110,7 +110,7 @@ UsbTransfer HidUsbDevice::give(std::size_t most) {
     next_ = now;  // Without a report, this is when the next is due.
   }
   if (!count) {
-    const bool gone = count.error().code == ErrorCode::kDevice;
+    const bool gone = count.error().code == ErrorCode::kUnplugged;
     return gone ? UsbTransfer::in_state(State::kGone) : UsbTransfer::busy_until(next_);
   }
   report_ = report;
@@ -147,7 +147,7 @@ UsbTransfer HidUsbDevice::class_request(const UsbSetup& setup, ByteView data) {
   } else if (setup.request_type == kHidOut && setup.request == kSetReport) {
     const Status written = far_end_.write_report(data);
     if (written) return UsbTransfer::done();
-    if (written.error().code == ErrorCode::kDevice) return UsbTransfer::in_state(State::kGone);
+    if (written.error().code == ErrorCode::kUnplugged) return UsbTransfer::in_state(State::kGone);
   }
   return UsbTransfer::in_state(State::kStall);
 }

@@ -21,7 +21,7 @@ ModbusAnswer ModbusUnit::execute(ByteView content) {
   } else if (const int exception = far_end_.last_exception(); exception != 0) {
     answer.content = encode_modbus_exception(content[0], static_cast<std::uint8_t>(exception));
   } else {
-    answer.gone = done.error().code == ErrorCode::kDevice;
+    answer.gone = done.error().code == ErrorCode::kUnplugged;
   }
   return answer;
 }

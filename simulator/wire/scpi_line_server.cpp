@@ -53,7 +53,7 @@ bool ScpiLineServer::take_line() {
   input_.erase(input_.begin(), end + 1);
   const Status taken = far_end_.write(line);
   ready_at_ = clock_.take_due();
-  if (!taken && taken.error().code == ErrorCode::kDevice) {  // This line pulled the plug.
+  if (!taken && taken.error().code == ErrorCode::kUnplugged) {  // This line pulled the plug.
     forget();
     terminal_.unplug();
     return false;

@@ -37,7 +37,7 @@ std::uint8_t code_of(UsbtmcStatus status) {
 
 /// What a far end's error means for a transfer.
 UsbTransfer failed_transfer(const Error& error) {
-  return UsbTransfer::in_state(error.code == ErrorCode::kDevice ? State::kGone : State::kSilent);
+  return UsbTransfer::in_state(error.code == ErrorCode::kUnplugged ? State::kGone : State::kSilent);
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ UsbTransfer UsbtmcDevice::request_answer(const UsbtmcHeader& header) {
       rest_ = *std::move(text) + "\n";
       answer.due = due;
       ready_at_ = due;
-    } else if (text.error().code == ErrorCode::kDevice) {
+    } else if (text.error().code == ErrorCode::kUnplugged) {
       return failed_transfer(text.error());
     } else if (text.error().code == ErrorCode::kProtocol) {
       // The answer to another request: under another tag, which is never 0.
