@@ -57,7 +57,11 @@ bool FaultSchedule::active(FaultKind kind, double time_s) const {
 }
 
 bool FaultSchedule::unplugged(double time_s) const {
-  return active(FaultKind::kUnplug, time_s);
+  return std::any_of(faults_.begin(), faults_.end(), [&](const Fault& fault) {
+    const config::FaultSpec& spec = fault.spec;
+    return spec.kind == FaultKind::kUnplug && !spec.at_operation && spec.operation.empty() &&
+           time_s >= spec.at.count() && time_s < (spec.at + spec.duration).count();
+  });
 }
 
 }  // namespace fogbench::simulator

@@ -281,5 +281,30 @@ TEST_F(UnpluggedSupplyTest, IsGone) {
   EXPECT_TRUE(supply_.plugged());
 }
 
+config::ScenarioConfig unplugged_by_the_first_set() {
+  config::ScenarioConfig scenario;
+  config::FaultSpec pulled;
+  pulled.device = "coil_horizontal";
+  pulled.kind = config::FaultKind::kUnplug;
+  pulled.operation = "set";
+  pulled.at_operation = 1;
+  scenario.faults = {pulled};
+  return scenario;
+}
+
+class PulledSupplyTest : public UsbtmcDeviceTest {
+ protected:
+  PulledSupplyTest() : UsbtmcDeviceTest(unplugged_by_the_first_set()) {}
+};
+
+TEST_F(PulledSupplyTest, TheOperationThatPullsThePlugIsNotExecutedAndThePlugIsBack) {
+  EXPECT_EQ(ask("CURR?"), "0.000000E+00\n");
+  EXPECT_EQ(out(message(1, "CURR 1")), State::kGone);
+  EXPECT_TRUE(supply_.plugged());
+  EXPECT_EQ(ask("CURR?"), "0.000000E+00\n");
+  EXPECT_EQ(out(message(1, "CURR 1")), State::kDone);
+  EXPECT_EQ(ask("CURR?"), "1.000000E+00\n");
+}
+
 }  // namespace
 }  // namespace fogbench::simulator
