@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 #include <sys/signalfd.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
@@ -54,11 +55,17 @@ class StopSignal {
     sigemptyset(&wanted);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&wanted, signal);
     sigprocmask(SIG_BLOCK, &wanted, &before_);
-    descriptor_ = simulator::FileDescriptor(signalfd(-1, &wanted, SFD_CLOEXEC));
+    descriptor_ = simulator::FileDescriptor(signalfd(-1, &wanted, SFD_NONBLOCK | SFD_CLOEXEC));
   }
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
-  ~StopSignal() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+  ~StopSignal() {
+    // One that has come has been heard: it must not end the process when the mask is taken off.
+    signalfd_siginfo heard;
+    while (read(descriptor_.get(), &heard, sizeof heard) > 0) {
+    }
+    sigprocmask(SIG_SETMASK, &before_, nullptr);
+  }
 
   int descriptor() const { return descriptor_.get(); }
 
