@@ -24,7 +24,8 @@ class OpenBenchTest : public testing::Test {
  protected:
   OpenBenchTest()
       : config_(*config::load_bench(tests::source_tree() / "config/benches/simulated.json")) {
-    scenario_.noise.angle_random_walk_deg_per_sqrt_h = 0.001;
+    // Little enough for one frame to show the rate, and never the same twice.
+    scenario_.noise.angle_random_walk_deg_per_sqrt_h = 1e-4;
   }
 
   void use(const std::string& device) {
