@@ -16,9 +16,12 @@ class Deadline {
   bool passed() const { return clock_.now() >= at_; }
   /// Never negative.
   Clock::Duration left() const { return std::max(at_ - clock_.now(), Clock::Duration::zero()); }
-  /// As poll() and the USB libraries take it, rounded up; 0 only when the deadline has passed.
+  /// As poll() and the libraries take it, rounded up; 0 only when the deadline has passed, and
+  /// never more than a day, which they can count.
   int left_ms() const {
-    return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(left()).count());
+    constexpr Clock::Duration kLongest = std::chrono::hours{24};
+    const auto ms = std::chrono::ceil<std::chrono::milliseconds>(std::min(left(), kLongest));
+    return static_cast<int>(ms.count());
   }
 
  private:

@@ -26,8 +26,7 @@ using Handle = std::unique_ptr<libusb_device_handle, HandleCloser>;
 
 /// libusb takes 0 for ever; a deadline that has passed waits a millisecond.
 unsigned wait_ms(Clock::Duration timeout) {
-  const auto ms = std::chrono::ceil<std::chrono::milliseconds>(timeout).count();
-  return static_cast<unsigned>(std::max<std::int64_t>(ms, 1));
+  return static_cast<unsigned>(std::max(Deadline(timeout).left_ms(), 1));
 }
 
 Error usb_error(int code, const std::string& what) {

@@ -62,11 +62,11 @@ class ModbusPort : public testing::TestWithParam<const char*> {
   bool is_tcp() const { return GetParam() == std::string("tcp"); }
   void serve() {
     server_.reset();
-    server_ = is_tcp() ? ModbusServer::tcp(registers_.answers(), port_)
-                       : ModbusServer::rtu(registers_.answers(), pty_.fd());
-    server_->spoil([this](Bytes& frame) {
+    const auto spoilt = [this](Bytes& frame) {
       if (const std::lock_guard lock(mutex_); spoil_) spoil_(frame);
-    });
+    };
+    server_ = is_tcp() ? ModbusServer::tcp(registers_.answers(), spoilt, port_)
+                       : ModbusServer::rtu(registers_.answers(), spoilt, pty_.fd());
     port_ = server_->port();
   }
   void spoil(ModbusServer::Spoil spoil) {

@@ -44,15 +44,14 @@ class FakeUsb final : public drivers::UsbBulk {
 
   /// An answer's transfer, padded.
   static Bytes answer(std::uint8_t tag, const std::string& text, bool is_last = true) {
-    Bytes bytes(12);
+    Bytes bytes((12 + text.size() + 3) / 4 * 4);
     bytes[0] = 2;
     bytes[1] = tag;
     bytes[2] = static_cast<std::uint8_t>(~tag);
     drivers::store_bytes(bytes.data() + 4, 4, drivers::ByteOrder::kLittleEndian,
                          static_cast<std::uint32_t>(text.size()));
     bytes[8] = is_last ? 1 : 0;
-    bytes.insert(bytes.end(), text.begin(), text.end());
-    bytes.resize((bytes.size() + 3) / 4 * 4);
+    std::copy(text.begin(), text.end(), bytes.begin() + 12);
     return bytes;
   }
   std::uint8_t last_tag() const { return tag_; }

@@ -52,13 +52,13 @@ inline std::uint16_t modbus_crc(const Bytes& bytes) {
 
 class ModbusServer {
  public:
-  /// Called on the server's thread, which may sleep in it; nothing: no answer. `frame` of spoil is
-  /// the answer as it goes over the wire.
+  /// Both are called on the server's thread. An answer may take its time, or be nothing; a spoil
+  /// changes the frame as it goes over the wire.
   using Answer = std::function<std::optional<Bytes>(const ModbusRequest&)>;
   using Spoil = std::function<void(Bytes& frame)>;
 
   /// On 127.0.0.1; port 0 chooses one.
-  static std::unique_ptr<ModbusServer> tcp(Answer answer, std::uint16_t port = 0) {
+  static std::unique_ptr<ModbusServer> tcp(Answer answer, Spoil spoil, std::uint16_t port = 0) {
     const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const int yes = 1;
     setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -71,15 +71,17 @@ class ModbusServer {
         getsockname(fd, reinterpret_cast<sockaddr*>(&at), &size) != 0) {
       std::abort();
     }
-    auto server = std::unique_ptr<ModbusServer>(new ModbusServer(std::move(answer)));
+    auto server =
+        std::unique_ptr<ModbusServer>(new ModbusServer(std::move(answer), std::move(spoil)));
     server->listener_ = fd;
     server->port_ = ntohs(at.sin_port);
     server->thread_ = std::thread([s = server.get()] { s->serve_tcp(); });
     return server;
   }
   /// On the master's end of a pseudo-terminal, which must outlive the server.
-  static std::unique_ptr<ModbusServer> rtu(Answer answer, int fd) {
-    auto server = std::unique_ptr<ModbusServer>(new ModbusServer(std::move(answer)));
+  static std::unique_ptr<ModbusServer> rtu(Answer answer, Spoil spoil, int fd) {
+    auto server =
+        std::unique_ptr<ModbusServer>(new ModbusServer(std::move(answer), std::move(spoil)));
     server->thread_ = std::thread([s = server.get(), fd] { s->serve_rtu(fd); });
     return server;
   }
@@ -90,11 +92,10 @@ class ModbusServer {
   }
 
   std::uint16_t port() const { return port_; }
-  void spoil(Spoil spoil) { spoil_ = std::move(spoil); }  ///< before the first request only
   int requests() const { return requests_; }
 
  private:
-  explicit ModbusServer(Answer answer) : answer_(std::move(answer)) {}
+  ModbusServer(Answer answer, Spoil spoil) : answer_(std::move(answer)), spoil_(std::move(spoil)) {}
 
   bool wait(int fd) const {
     pollfd ready{fd, POLLIN, 0};
@@ -129,7 +130,7 @@ class ModbusServer {
     return true;
   }
   void send(int fd, Bytes frame) {
-    if (spoil_) spoil_(frame);
+    spoil_(frame);
     if (::write(fd, frame.data(), frame.size()) < 0) return;  // the client has gone
   }
   void serve_tcp() {
@@ -146,7 +147,7 @@ class ModbusServer {
                   frame[6]};
         out.insert(out.end(), pdu->begin(), pdu->end());
         // Where the client has closed, a write must not raise SIGPIPE.
-        if (spoil_) spoil_(out);
+        spoil_(out);
         ::send(fd, out.data(), out.size(), MSG_NOSIGNAL);
       }
       close(fd);
