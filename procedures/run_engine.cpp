@@ -172,7 +172,7 @@ Status RunEngine::Run::await_return(const std::string& reason) {
   const auto begun = engine_.clock_.now();
   auto noted = watch_.event("warning", reason + "; coils to 0 A until it is back");
   if (!noted) return noted;
-  says_ = "waiting for an instrument: " + reason;
+  const std::string interrupted = std::exchange(says_, "waiting for an instrument: " + reason);
   for (;;) {
     const auto off = session_.switch_off();
     // Every reading must have come since: a tick reads all of them.
@@ -186,7 +186,10 @@ Status RunEngine::Run::await_return(const std::string& reason) {
       if (!noted) return noted;
       // A block sets its own currents.
       const auto restored = session_.restore(plan_.steps[step_].block == 0);
-      if (restored || restored.error().code != ErrorCode::kUnplugged) return restored;
+      if (restored || restored.error().code != ErrorCode::kUnplugged) {
+        says_ = interrupted;
+        return restored;
+      }
     }
     if (waited > engine_.config_.limits.absence_maximum) {
       return Error{ErrorCode::kDevice,
