@@ -29,6 +29,7 @@ ordered_json missing_json(const model::MissingEffect& m) {
           {"identified", !m.found.inner_at_edge},
           {"rms_after", m.rms_after},
           {"heldout_rms_after", m.heldout_rms_after},
+          {"heldout_blocks_better", {m.found.heldout.better, m.found.heldout.folds}},
           {"or_shape", m.found.or_shape.empty() ? ordered_json() : ordered_json(m.found.or_shape)},
           {"rivals", rivals}};
 }

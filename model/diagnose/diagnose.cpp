@@ -139,7 +139,8 @@ class Work {
     if (!library) return library.error();
 
     tell("searching for what is missing", 0.3);
-    const SearchInput input_of_search{*library, *shapes, base->columns, base->y};
+    const SearchInput input_of_search{*library,      *shapes, table_.windows(), table_.bench_rows(),
+                                      base->columns, base->y};
     SearchOptions search_options;
     search_options.first_level = kShareOfEffects * options_.false_alarm_rate;
     search_options.outside_level = kShareOfShapes * options_.false_alarm_rate;

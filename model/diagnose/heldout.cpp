@@ -3,7 +3,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <memory>
+#include <numeric>
 #include <optional>
 
 #include "model/design.hpp"
@@ -74,7 +75,76 @@ Windows windows_at(const Windows& all, const std::vector<Index>& rows) {
   return out;
 }
 
+/// The rows that a fold leaves out, and those that it fits.
+struct Fold {
+  std::vector<Index> kept, left;
+};
+
+std::vector<Fold> folds_of(const std::vector<Index>& rows) {
+  const std::size_t n = rows.size(), folds = std::min(kFolds, n);
+  std::vector<Fold> out(folds);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t block = i * folds * kBlocksPerFold / n;
+    for (std::size_t fold = 0; fold < folds; ++fold) {
+      (block % folds == fold ? out[fold].left : out[fold].kept).push_back(rows[i]);
+    }
+  }
+  return out;
+}
+
+/// Errors of the left-out rows' predictions, weighted least squares over the kept ones; nothing
+/// when the kept rows do not determine all coefficients.
+std::optional<VectorXd> predicted_badly(const MatrixXd& columns, const VectorXd& y,
+                                        const Fold& fold, const Whitener* whitener, Index rank) {
+  const VectorXd truth = y(fold.left);
+  if (columns.cols() == 0) return truth;
+  MatrixXd x = columns(fold.kept, Eigen::all);
+  VectorXd seen = y(fold.kept);
+  if (whitener != nullptr) {
+    x = whitener->whiten(x);
+    seen = whitener->whiten(seen);
+  }
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(x);
+  if (qr.rank() < rank) return std::nullopt;  // the block held something that nothing else shows
+  return truth - columns(fold.left, Eigen::all) * qr.solve(seen);
+}
+
 }  // namespace
+
+std::vector<HeldoutVote> heldout_votes(const Windows& windows, const NoiseCoefficients& noise,
+                                       const MatrixXd& with, const std::vector<MatrixXd>& without,
+                                       const VectorXd& y, Index bench_rows) {
+  const auto whitener = make_whitener(windows, noise);
+  if (!whitener) return {};
+  std::vector<Index> bench(static_cast<std::size_t>(bench_rows)), quiet;
+  std::iota(bench.begin(), bench.end(), Index{0});
+  for (Index i = bench_rows; i < windows.rows(); ++i) quiet.push_back(i);
+
+  std::vector<HeldoutVote> votes(without.size());
+  for (Fold& fold : folds_of(bench)) {
+    fold.kept.insert(fold.kept.end(), quiet.begin(), quiet.end());
+    if (static_cast<Index>(fold.kept.size()) < with.cols()) continue;
+    const auto others = make_whitener(windows_at(windows, fold.kept), noise);
+    if (!others) continue;
+    const auto full = predicted_badly(with, y, fold, others->get(), with.cols());
+    if (!full) continue;
+    MatrixXd errors = MatrixXd::Zero(windows.rows(), static_cast<Index>(without.size()) + 1);
+    errors(fold.left, 0) = *full;
+    for (std::size_t i = 0; i < without.size(); ++i) {
+      const auto less = predicted_badly(without[i], y, fold, others->get(), 0);
+      errors(fold.left, static_cast<Index>(i) + 1) = *less;
+    }
+    errors = (*whitener)->whiten(errors);
+    for (std::size_t i = 0; i < without.size(); ++i) {
+      const double gain =
+          errors.col(static_cast<Index>(i) + 1).squaredNorm() - errors.col(0).squaredNorm();
+      votes[i].gain += gain;
+      votes[i].better += gain > 0.0 ? 1 : 0;
+      ++votes[i].folds;
+    }
+  }
+  return votes;
+}
 
 double heldout_rms(const Table& table, const Windows& windows, const config::ModelFile& fitted,
                    const NoiseCoefficients& noise) {
@@ -83,37 +153,25 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
   if (!system) return kMissing;
   const auto n = system->complete.size();
   const auto p = static_cast<std::size_t>(system->x.cols());
-  const std::size_t folds = std::min(kFolds, n);
-  if (n < p + 2 || folds < 2) return kMissing;
+  if (n < p + 2) return kMissing;
 
   const Index rank =
       p > 0 ? Eigen::ColPivHouseholderQR<MatrixXd>(system->x(system->complete, Eigen::all)).rank()
             : 0;
   double squares = 0.0;
   std::size_t count = 0;
-  for (std::size_t fold = 0; fold < folds; ++fold) {
-    std::vector<Index> kept, left;
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t block = i * folds * kBlocksPerFold / n;
-      (block % folds == fold ? left : kept).push_back(system->complete[i]);
-    }
-    if (kept.size() < p) continue;
-    MatrixXd x = system->x(kept, Eigen::all);
-    VectorXd y = system->y(kept);
+  for (const Fold& fold : folds_of(system->complete)) {
+    if (fold.kept.size() < p) continue;
+    std::unique_ptr<Whitener> whitener;
     if (noise.angle_random_walk_deg_per_sqrt_h > 0.0) {
-      if (const auto whitener = make_whitener(windows_at(windows, kept), noise)) {
-        x = (*whitener)->whiten(x);
-        y = (*whitener)->whiten(y);
+      if (auto made = make_whitener(windows_at(windows, fold.kept), noise)) {
+        whitener = std::move(*made);
       }
     }
-    VectorXd beta(0);  // every term is held: nothing to fit
-    if (p > 0) {
-      const Eigen::ColPivHouseholderQR<MatrixXd> qr(x);
-      if (qr.rank() < rank) continue;  // the block held something that nothing else shows
-      beta = qr.solve(y);
-    }
-    squares += (system->y(left) - system->x(left, Eigen::all) * beta).squaredNorm();
-    count += left.size();
+    const auto errors = predicted_badly(system->x, system->y, fold, whitener.get(), rank);
+    if (!errors) continue;
+    squares += errors->squaredNorm();
+    count += fold.left.size();
   }
   return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : kMissing;
 }

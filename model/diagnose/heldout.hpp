@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <vector>
+
 #include "config/model_file.hpp"
 #include "model/noise.hpp"
 #include "model/table.hpp"
@@ -13,5 +16,23 @@ namespace fogbench::model {
 /// `windows`: of the table's rows, which are in order and complete.
 double heldout_rms(const Table& table, const Windows& windows, const config::ModelFile& fitted,
                    const NoiseCoefficients& noise);
+
+/// Whether blocks of rows that took no part in the fit are predicted better with some columns than
+/// without them.
+struct HeldoutVote {
+  /// Fall of the predictions' weighted sum of squares: what independent unit errors would add up
+  /// to. At most zero: nothing was learnt that holds elsewhere.
+  double gain = 0.0;
+  int better = 0;  ///< of `folds`
+  int folds = 0;   ///< in which the other rows show the columns at all
+};
+
+/// One vote for each of `without`, the columns of a smaller model; `with` are those of the full
+/// one. Rows from `bench_rows` on (a static record) are never left out. Empty when the noise is not
+/// known.
+std::vector<HeldoutVote> heldout_votes(const Windows& windows, const NoiseCoefficients& noise,
+                                       const Eigen::MatrixXd& with,
+                                       const std::vector<Eigen::MatrixXd>& without,
+                                       const Eigen::VectorXd& y, Eigen::Index bench_rows);
 
 }  // namespace fogbench::model

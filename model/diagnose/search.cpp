@@ -67,13 +67,9 @@ class Search {
   SearchResult run() {
     while (found().size() < options_.most_effects && step()) {
     }
-    // Each verdict rests on the other effects; a change starts the round again, a few times at
-    // most.
-    int changes = 0;
-    for (std::size_t i = 0; i < found().size();) {
-      i = judge(i, changes < kMostChanges) ? i + 1 : 0;
-      changes += i == 0 ? 1 : 0;
-    }
+    do {
+      judge_all();
+    } while (!hold_out());
     doubt_sums_of_one_variable();
     return std::move(result_);
   }
@@ -186,6 +182,37 @@ class Search {
     find_rivals(f, stage);
     face_shadows(f, stage);
     return true;
+  }
+
+  /// Each verdict rests on the other effects; a change starts the round again, a few times at most.
+  void judge_all() {
+    int changes = 0;
+    for (std::size_t i = 0; i < found().size();) {
+      i = judge(i, changes < kMostChanges) ? i + 1 : 0;
+      changes += i == 0 ? 1 : 0;
+    }
+  }
+
+  /// Drops the addition that predicts rows which took no part in the fit least well, where it does
+  /// so no better than the model without it. The first stays, and says so: its global p-value
+  /// stands on its own. False when the list changed.
+  bool hold_out() {
+    if (found().empty()) return true;
+    const MatrixXd with = base_with(input_, found());
+    const auto noise = gls(input_.shapes, with, input_.y);
+    if (!noise) return true;
+    std::vector<MatrixXd> without;
+    for (const Found& f : found()) without.push_back(base_with(input_, found(), &f));
+    const auto votes = heldout_votes(input_.windows, noise->noise.noise, with, without, input_.y,
+                                     input_.bench_rows);
+    std::size_t worst = 0;
+    for (std::size_t i = 0; i < votes.size(); ++i) {
+      found()[i].heldout = votes[i];
+      if (i > 0 && (worst == 0 || votes[i].gain < votes[worst].gain)) worst = i;
+    }
+    if (worst == 0 || votes[worst].folds == 0 || votes[worst].gain > 0.0) return true;
+    found().erase(found().begin() + static_cast<std::ptrdiff_t>(worst));
+    return false;
   }
 
   void find_rivals(Found& f, Stage& stage) {

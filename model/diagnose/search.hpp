@@ -1,7 +1,8 @@
 #pragma once
 // The search of a diagnosis: test, add the best candidate, test again, until nothing that is left
 // is more than noise; then judge every addition with all the others in the model: is it still
-// needed, does another candidate do as well, does a shape from outside the catalogue do better?
+// needed, does another candidate do as well, does a shape from outside the catalogue do better, are
+// rows that took no part in the fit predicted better with it?
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "model/diagnose/detector.hpp"
+#include "model/diagnose/heldout.hpp"
 #include "model/gls.hpp"
 
 namespace fogbench::model {
@@ -34,6 +36,7 @@ struct Found {
   std::string or_shape;       ///< a shadow that cannot be excluded either
   bool shape_leads = false;   ///< it even does better
   bool inner_at_edge = false;
+  HeldoutVote heldout;  ///< with it against without it, all others in the model
 };
 
 /// What the data say of an effect that was not found.
@@ -53,11 +56,14 @@ struct SearchResult {
   std::vector<Bound> bounds;
 };
 
-/// What is searched. `base` holds the model's own columns (with the tangents of its inner
+/// What is searched: windows of which the first `bench_rows` are the bench's, the rest a static
+/// record's. `base` holds the model's own columns (with the tangents of its inner
 /// parameters), of full rank; y is the observable less the terms that are held.
 struct SearchInput {
   const Library& tried;
   const NoiseShapes& shapes;
+  const Windows& windows;
+  Eigen::Index bench_rows;
   Eigen::MatrixXd base;
   Eigen::VectorXd y;
 };

@@ -61,6 +61,13 @@ std::string effect_sentence(const MissingEffect& m) {
   }
   line += fmt::format("; {}, the RMS residual falls to {:.3g} deg/h",
                       probability_text(m.found.p_value), m.rms_after);
+  const HeldoutVote& vote = m.found.heldout;
+  if (vote.folds > 0) {
+    line += vote.gain > 0.0
+                ? fmt::format("; {} of {} held-out parts are predicted better with it", vote.better,
+                              vote.folds)
+                : "; held-out parts are not predicted better with it, so take it with caution";
+  }
   if (m.found.inner_at_edge) {
     line += "; its inner parameter lies on the edge of the range and is not identified";
   }

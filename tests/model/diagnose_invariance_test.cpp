@@ -166,8 +166,10 @@ TEST(DiagnoseInvariance, OrderOfTheCatalogue) {
   base << Eigen::VectorXd::Ones(table->rows()), column("field_x_ut"), column("field_y_ut"),
       column("field_z_ut");
   const Eigen::VectorXd y = column("rate_deg_per_h");
-  const SearchResult one = search({*library, *shapes, base, y}, {});
-  const SearchResult other = search({permuted, *shapes, base, y}, {});
+  const SearchResult one =
+      search({*library, *shapes, table->windows(), table->bench_rows(), base, y}, {});
+  const SearchResult other =
+      search({permuted, *shapes, table->windows(), table->bench_rows(), base, y}, {});
   ASSERT_EQ(one.found.size(), other.found.size());
   ASSERT_FALSE(one.found.empty());
   for (std::size_t i = 0; i < one.found.size(); ++i) {
