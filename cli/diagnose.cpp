@@ -19,6 +19,7 @@
 #include "config/units.hpp"
 #include "model/diagnose/diagnose.hpp"
 #include "model/diagnose/diagnosis_report.hpp"
+#include "model/diagnose/working_table.hpp"
 #include "model/effect.hpp"
 
 namespace fogbench::cli {
@@ -206,7 +207,7 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
   if (!page_file) return page_file.error();
   if (!model_file) return model_file.error();
   config::OutputFile *page = page_file->get(), *extended = model_file->get();
-  const auto table = load_table(options.data);
+  const auto table = load_table(options.data, model::kMostRowsToRead);
   if (!table) return table.error();
   auto how = options_of(options);
   if (!how) return how.error();
@@ -215,7 +216,7 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
     DataOptions record = options.data;
     record.data = {options.quiet};
     record.segment.clear();
-    auto loaded = load_table(record);
+    auto loaded = load_table(record, model::kMostRowsToRead);
     if (!loaded) return loaded.error();
     quiet = std::move(*loaded);
     how->quiet = &*quiet;

@@ -68,7 +68,7 @@ Result<model::Table> load_run(const std::string& store, std::int64_t run, const 
 
 /// "7", "STORE.db#7" or a CSV file.
 Result<model::Table> load_one(const std::string& data, const DataOptions& options,
-                              const Renames& renames) {
+                              const Renames& renames, std::size_t most_rows) {
   if (const auto run = run_number(data)) {
     return load_run(options.store, *run, renames, options.unfinished);
   }
@@ -78,7 +78,7 @@ Result<model::Table> load_one(const std::string& data, const DataOptions& option
       return load_run(data.substr(0, hash), *run, renames, options.unfinished);
     }
   }
-  return model::read_csv(data, renames);
+  return model::read_csv(data, renames, most_rows);
 }
 
 void name_runs_after(const std::string& data, model::Table& table) {
@@ -125,12 +125,12 @@ std::string data_arguments(const DataOptions& options) {
   return out.substr(out.empty() ? 0 : 1);
 }
 
-Result<model::Table> load_table(const DataOptions& options) {
+Result<model::Table> load_table(const DataOptions& options, std::size_t most_rows) {
   const auto renames = parse_renames(options.columns);
   if (!renames) return renames.error();
   std::optional<model::Table> all;
   for (const std::string& data : options.data) {
-    auto table = load_one(data, options, *renames);
+    auto table = load_one(data, options, *renames, most_rows);
     if (!table) return table.error();
     if (options.data.size() > 1) name_runs_after(data, *table);
     if (all) {

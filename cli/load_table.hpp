@@ -31,7 +31,9 @@ std::string data_arguments(const DataOptions& options);
 
 /// The tables one after the other. With several, the run of each row is "DATA/run", so that test 1
 /// of two records stays two runs.
+/// Of a longer CSV file neighbouring rows are averaged (model/table.hpp, read_csv).
 /// Errors: kBadInput (no such file or run, not CSV, no row matches the segment), kStore.
-Result<model::Table> load_table(const DataOptions& options);
+Result<model::Table> load_table(const DataOptions& options,
+                                std::size_t most_rows = model::kEveryRow);
 
 }  // namespace fogbench::cli

@@ -1,5 +1,5 @@
 // Reads a measurement table from CSV in one pass through a fixed buffer: memory is that of the
-// columns, whatever the file holds.
+// columns, whatever the file holds, and the columns are as short as the caller wants them.
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -10,11 +10,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <utility>
 
+#include "model/condense.hpp"
+#include "model/csv_fields.hpp"
 #include "model/line_reader.hpp"
 #include "model/table.hpp"
 
@@ -39,57 +40,6 @@ constexpr std::array<std::string_view, 17> kMeasurementColumns = {"rate_deg_per_
                                                                   "temperature_gradient_c",
                                                                   "current_horizontal_a",
                                                                   "current_vertical_a"};
-
-/// What was found, short and printable.
-std::string shown(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text.substr(0, 40)) {
-    const auto byte = static_cast<unsigned char>(c);
-    result += byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
-  }
-  return result + (text.size() > 40 ? "...'" : "'");
-}
-
-bool has_control_characters(std::string_view text) {
-  return std::any_of(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f;
-  });
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
-/// Takes the next field off `line`, and its comma. Returns false when a quote is never closed.
-/// `last` is set when no field follows.
-bool take_field(std::string_view& line, std::string& field, bool& last) {
-  field.clear();
-  std::size_t at = 0;
-  while (at < line.size() && line[at] == ' ') ++at;
-  if (at < line.size() && line[at] == '"') {
-    for (++at; at < line.size(); ++at) {
-      if (line[at] != '"') {
-        field += line[at];
-      } else if (at + 1 < line.size() && line[at + 1] == '"') {
-        field += line[at++];
-      } else {
-        break;
-      }
-    }
-    if (at == line.size()) return false;
-    ++at;
-    while (at < line.size() && line[at] == ' ') ++at;
-    if (at < line.size() && line[at] != ',') return false;
-  } else {
-    at = std::min(line.find(','), line.size());
-    field = trimmed(line.substr(0, at));
-  }
-  last = at >= line.size();
-  line.remove_prefix(last ? line.size() : at + 1);
-  return true;
-}
 
 /// Reads "-12.345" from the front of a line, correctly rounded: up to 15 digits are exact in a
 /// double, and so is the power of ten, which leaves one rounding. Returns where it stopped, or null
@@ -121,16 +71,6 @@ const char* plain_number(const char* at, const char* end, double& value) {
   return at;
 }
 
-/// A number, NaN for missing, or nothing when the text is neither.
-std::optional<double> to_number(std::string_view text) {
-  if (text.empty()) return kMissing;
-  if (text.front() == '+' && !text.substr(1).starts_with('-')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc() || end != text.data() + text.size() || std::isinf(value)) return {};
-  return value;
-}
-
 class TextBuilder {
  public:
   void add(const std::string& text) {
@@ -138,6 +78,13 @@ class TextBuilder {
         places_.try_emplace(text, static_cast<std::uint32_t>(column_.values.size()));
     if (is_new) column_.values.push_back(text);
     column_.index.push_back(place->second);
+  }
+  const std::vector<std::uint32_t>& index() const { return column_.index; }
+  void keep_first(const std::vector<RowGroup>& groups) {
+    if (column_.index.empty()) return;
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      column_.index[i] = column_.index[groups[i].begin];
+    column_.index.resize(groups.size());
   }
   TextColumn take() { return std::move(column_); }
 
@@ -148,8 +95,16 @@ class TextBuilder {
 
 class CsvReader {
  public:
-  CsvReader(const std::filesystem::path& file, const std::map<std::string, std::string>& renames)
-      : file_(file), renames_(renames), open_(file), lines_(open_.descriptor()) {}
+  CsvReader(const std::filesystem::path& file, const std::map<std::string, std::string>& renames,
+            std::size_t most_rows)
+      : file_(file),
+        renames_(renames),
+        open_(file),
+        lines_(open_.descriptor()),
+        most_rows_(most_rows) {}
+
+  /// Rows were averaged although a later one shows that they are not in the order of time.
+  bool averaged_in_vain() const { return rows_averaged_ > 1 && out_of_order_; }
 
   Result<Table> read() {
     struct stat status {};
@@ -269,7 +224,9 @@ class CsvReader {
       if (line.empty()) continue;
       if (Status row = read_row(line); !row) return row;
       if (++rows_ == 1000) reserve((lines_.consumed() - header_bytes) / rows_);
+      if (++stored_ >= most_rows_) average_neighbours();
     }
+    if (rows_averaged_ > 1 && !out_of_order()) average_neighbours(rows_averaged_);
     if (rows_ == 0) {
       return bad(fmt::format("{}: found a header and no rows, expected at least one row of data",
                              file_.string()));
@@ -279,7 +236,8 @@ class CsvReader {
 
   /// Room for all rows at once, so that no column is ever copied while it grows.
   void reserve(std::size_t bytes_per_row) {
-    const std::size_t expected = size_ / std::max<std::size_t>(bytes_per_row, 2);
+    const std::size_t expected =
+        std::min(size_ / std::max<std::size_t>(bytes_per_row, 2), most_rows_);
     for (Column& column : columns_) {
       if (column.kind == Kind::kNumber || column.kind == Kind::kOther) {
         column.values.reserve(expected + expected / 16);
@@ -348,6 +306,44 @@ class CsvReader {
     return {};
   }
 
+  /// Twice as many rows of the file in each row of the table.
+  void average_neighbours() {
+    if (out_of_order()) {
+      most_rows_ = kEveryRow;
+      return;
+    }
+    rows_averaged_ *= 2;
+    average_neighbours(rows_averaged_);
+    // Rows of many short segments stay many.
+    if (stored_ > most_rows_ / 2) most_rows_ *= 2;
+  }
+
+  void average_neighbours(std::size_t rows) {
+    counts_.resize(stored_, 1);
+    const std::vector<RowGroup> groups = neighbours(run_.index(), segment_.index(), counts_, rows);
+    for (Column& column : columns_) {
+      if (column.values.empty()) continue;
+      std::vector<double> averaged = condensed(column.name, column.values, counts_, groups);
+      // Not assigned as a whole: the column keeps the room that it has.
+      column.values.assign(averaged.begin(), averaged.end());
+    }
+    run_.keep_first(groups);
+    segment_.keep_first(groups);
+    counts_ = rows_of(counts_, groups);
+    stored_ = groups.size();
+  }
+
+  bool out_of_order() {
+    const auto time = std::find_if(columns_.begin(), columns_.end(),
+                                   [](const Column& c) { return c.name == "time_s"; });
+    if (time == columns_.end()) return false;
+    for (std::size_t i = 1; i < time->values.size(); ++i) {
+      const bool one_run = run_.index().empty() || run_.index()[i] == run_.index()[i - 1];
+      out_of_order_ = out_of_order_ || (one_run && time->values[i] < time->values[i - 1]);
+    }
+    return out_of_order_;
+  }
+
   Error wrong_width(std::size_t column, std::string_view rest, bool line_ended) {
     std::size_t found = column + 1;
     for (bool last = line_ended; !last; ++found) {
@@ -367,6 +363,7 @@ class CsvReader {
       }
       if (!column.dropped.empty()) table.set_dropped(column.name, column.dropped);
     }
+    table.set_rows_averaged(rows_averaged_);
     return table;
   }
 
@@ -375,6 +372,9 @@ class CsvReader {
   OpenFile open_;
   LineReader lines_;
   std::size_t size_ = 0, line_number_ = 0, rows_ = 0;
+  std::size_t most_rows_, stored_ = 0, rows_averaged_ = 1;
+  bool out_of_order_ = false;
+  std::vector<std::uint32_t> counts_;  ///< rows of the file in each row, once there are more
   std::vector<Column> columns_;
   TextBuilder run_, segment_;
   std::string field_;
@@ -383,8 +383,11 @@ class CsvReader {
 }  // namespace
 
 Result<Table> read_csv(const std::filesystem::path& file,
-                       const std::map<std::string, std::string>& renames) {
-  return CsvReader(file, renames).read();
+                       const std::map<std::string, std::string>& renames, std::size_t most_rows) {
+  CsvReader reader(file, renames, most_rows);
+  auto table = reader.read();
+  if (!reader.averaged_in_vain()) return table;
+  return CsvReader(file, renames, kEveryRow).read();
 }
 
 }  // namespace fogbench::model

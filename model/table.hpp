@@ -18,6 +18,8 @@ namespace fogbench::model {
 /// In tables and results: no value.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
+inline constexpr std::size_t kEveryRow = std::numeric_limits<std::size_t>::max();
+
 /// Texts of one column, stored once each: a table has millions of rows and a few segments.
 struct TextColumn {
   std::vector<std::string> values;
@@ -47,6 +49,10 @@ class Table {
   /// Remembers why a column of the source is not in the table.
   void set_dropped(std::string name, std::string because);
 
+  /// How many rows of its source a row stands for at most; 1 unless it was read with a limit.
+  std::size_t rows_averaged() const { return rows_averaged_; }
+  void set_rows_averaged(std::size_t rows) { rows_averaged_ = rows; }
+
   /// Rows for which `keep` is true, in their order.
   Table select(const std::vector<bool>& keep) const;
   /// Appends the other's rows; columns that one side lacks are NaN there.
@@ -55,7 +61,7 @@ class Table {
  private:
   void set_rows(std::size_t rows);
 
-  std::size_t rows_ = 0;
+  std::size_t rows_ = 0, rows_averaged_ = 1;
   std::map<std::string, std::vector<double>, std::less<>> columns_;
   std::map<std::string, std::string, std::less<>> dropped_;
   TextColumn run_, segment_;
@@ -67,7 +73,12 @@ class Table {
 /// that had the wanted name, if any, is dropped.
 /// Text in a column of numbers is kBadInput with file, line and column; a column that is not of the
 /// measurement table is dropped instead.
+///
+/// Of a file with more than `most_rows` rows, neighbours of one run and segment are averaged while
+/// it is read, so that memory is bounded by `most_rows`: a duration becomes the sum, a standard
+/// error that of the mean. Where the rows of a run are not in order of time, all are kept.
 Result<Table> read_csv(const std::filesystem::path& file,
-                       const std::map<std::string, std::string>& renames = {});
+                       const std::map<std::string, std::string>& renames = {},
+                       std::size_t most_rows = kEveryRow);
 
 }  // namespace fogbench::model

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <span>
 
+#include "model/condense.hpp"
 #include "model/design.hpp"
 #include "model/signals.hpp"
 
@@ -24,9 +25,7 @@ constexpr double kLeastFilled = 0.5;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kStdError = "rate_std_error_deg_per_h";
 
-struct Bin {
-  std::size_t begin, end;
-};
+using Bin = RowGroup;
 
 TextColumn picked(const TextColumn& from, const std::vector<std::size_t>& rows) {
   TextColumn to{from.values, {}};
@@ -185,15 +184,8 @@ RowTimes times_of(const TextColumn& runs, std::vector<double> time, std::vector<
 
 /// Neighbouring rows of one run and segment, `per_bin` at a time.
 std::vector<Bin> bins_of(const Table& table, std::size_t per_bin) {
-  const auto &run = table.run().index, &segment = table.segment().index;
-  std::vector<Bin> bins;
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    const bool fresh = bins.empty() || i - bins.back().begin >= per_bin || run[i] != run[i - 1] ||
-                       segment[i] != segment[i - 1];
-    if (fresh) bins.push_back({i, i});
-    bins.back().end = i + 1;
-  }
-  return bins;
+  const std::vector<std::uint32_t> ones(table.rows(), 1);
+  return neighbours(table.run().index, table.segment().index, ones, per_bin);
 }
 
 /// At most `most` bins, where the segments allow it.
@@ -204,35 +196,6 @@ std::vector<Bin> bins_within(const Table& table, std::size_t most) {
   while (bins.size() > most && per_bin < table.rows())
     bins = bins_of(table, per_bin += per_bin / 4 + 1);
   return bins;
-}
-
-/// One number a bin.
-std::vector<double> averaged(const std::string& name, std::span<const double> values,
-                             const std::vector<Bin>& bins) {
-  std::vector<double> column;
-  column.reserve(bins.size());
-  for (const Bin& bin : bins) {
-    // The ends of a bin are those of its first and last row.
-    if (name == "temperature_start_c") {
-      column.push_back(values[bin.begin]);
-      continue;
-    }
-    if (name == "temperature_end_c") {
-      column.push_back(values[bin.end - 1]);
-      continue;
-    }
-    const auto count = static_cast<double>(bin.end - bin.begin);
-    double sum = 0.0;
-    for (std::size_t i = bin.begin; i < bin.end; ++i) {
-      sum += name == kStdError ? values[i] * values[i] : values[i];
-    }
-    if (name == kStdError) {
-      column.push_back(std::sqrt(sum) / count);
-    } else {
-      column.push_back(name.ends_with("duration_s") ? sum : sum / count);
-    }
-  }
-  return column;
 }
 
 /// The run and the segment of each bin.
@@ -248,7 +211,7 @@ Table texts_of(const Table& table, const std::vector<Bin>& bins) {
 Table averaged(const Table& table, const std::vector<Bin>& bins) {
   Table out = texts_of(table, bins);
   for (const std::string& name : table.column_names()) {
-    out.set_column(name, averaged(name, table.column(name), bins));
+    out.set_column(name, condensed(name, table.column(name), {}, bins));
   }
   return out;
 }
@@ -272,7 +235,7 @@ Table in_order(const Table& table, const std::string& observable,
       out.set_dropped(name, filled.error().message);
       continue;
     }
-    out.set_column(name, averaged(name, column, bins));
+    out.set_column(name, condensed(name, column, {}, bins));
     if (name == "time_s") time = std::move(column);
     if (name == "duration_s") duration = std::move(column);
   }
@@ -280,8 +243,8 @@ Table in_order(const Table& table, const std::string& observable,
   if (!times.usable && out.has("time_s")) {
     out.set_dropped("time_s", "column time_s: stands still or runs backwards");
   }
-  out.set_column("window_centre_s", averaged("window_centre_s", times.centre, bins));
-  out.set_column("window_duration_s", averaged("window_duration_s", times.duration, bins));
+  out.set_column("window_centre_s", condensed("window_centre_s", times.centre, {}, bins));
+  out.set_column("window_duration_s", condensed("window_duration_s", times.duration, {}, bins));
   return out;
 }
 
@@ -347,7 +310,7 @@ Result<WorkingTable> WorkingTable::make(const Table& table, const config::ModelF
   out.fine_ = in_order(table, model.observable, *rows);
   std::vector<Bin> bins = bins_within(out.fine_, kMostRows);
   out.bench_ = averaged(out.fine_, bins);
-  out.rows_per_bin_ = std::max<std::size_t>(1, rows->size() / bins.size());
+  out.rows_per_bin_ = std::max<std::size_t>(1, rows->size() * table.rows_averaged() / bins.size());
   Table coarse = out.bench_;
   if (quiet != nullptr && quiet->has(model.observable) && quiet->rows() > 0) {
     const Table still = quiet_run(*quiet, out.fine_, model.observable);

@@ -17,6 +17,9 @@
 
 namespace fogbench::model {
 
+/// What of a file is worth reading: ten rows for each fine one.
+inline constexpr std::size_t kMostRowsToRead = 300'000;
+
 /// 1 in the rows of a joined static record, 0 elsewhere.
 inline constexpr const char* kQuietColumn = "quiet_record";
 

@@ -20,10 +20,11 @@ using testing::HasSubstr;
 class ReadCsv : public testing::Test {
  protected:
   Result<Table> read(const std::string& text,
-                     const std::map<std::string, std::string>& renames = {}) {
+                     const std::map<std::string, std::string>& renames = {},
+                     std::size_t most_rows = kEveryRow) {
     const std::filesystem::path file = folder_ / "data.csv";
     std::ofstream(file, std::ios::binary) << text;
-    return read_csv(file, renames);
+    return read_csv(file, renames, most_rows);
   }
   /// The error's text after the file's name.
   std::string error(const std::string& text,
@@ -206,6 +207,61 @@ TEST_F(ReadCsv, WhatWasWrittenReadsBack) {
   EXPECT_EQ(back->column("rate_deg_per_h")[0], 0.1);
   EXPECT_TRUE(std::isnan(back->column("rate_deg_per_h")[1]));
   EXPECT_EQ(back->column("rate_deg_per_h")[2], -1e-300);
+}
+
+/// Rows at 1 s, two segments of `each` rows, rate = row number.
+std::string long_text(int each) {
+  std::string text = "time_s,duration_s,rate_std_error_deg_per_h,segment,rate_deg_per_h\n";
+  for (int i = 0; i < 2 * each; ++i) {
+    text +=
+        std::to_string(i) + ",1,0.2," + (i < each ? "up" : "down") + "," + std::to_string(i) + "\n";
+  }
+  return text;
+}
+
+TEST_F(ReadCsv, AveragesNeighboursOfASegmentWhereRowsAreManyMoreThanAsked) {
+  const auto table = read(long_text(50), {}, 60);
+  ASSERT_TRUE(table);
+  // Averaged by twos at the 60th row, by fours at the 90th; the last of each segment has two.
+  EXPECT_EQ(table->rows_averaged(), 4U);
+  ASSERT_EQ(table->rows(), 26U);
+  EXPECT_EQ(table->column("rate_deg_per_h")[0], 1.5);
+  EXPECT_EQ(table->column("time_s")[11], 45.5);
+  EXPECT_EQ(table->column("duration_s")[11], 4.0);
+  EXPECT_DOUBLE_EQ(table->column("rate_std_error_deg_per_h")[11], 0.1);
+  EXPECT_EQ(table->segment().at(12), "up");
+  EXPECT_EQ(table->column("rate_deg_per_h")[12], 48.5);
+  EXPECT_EQ(table->segment().at(13), "down");
+}
+
+TEST_F(ReadCsv, KeepsEveryRowWhereTheyAreFew) {
+  const auto table = read(long_text(50), {}, 101);
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rows_averaged(), 1U);
+  EXPECT_EQ(table->rows(), 100U);
+}
+
+TEST_F(ReadCsv, KeepsEveryRowWhereTheirOrderIsNotThatOfTime) {
+  std::string text = long_text(50);
+  text += "3,1,0.2,down,3\n";
+  const auto table = read(text, {}, 40);
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rows_averaged(), 1U);
+  EXPECT_EQ(table->rows(), 101U);
+}
+
+TEST_F(ReadCsv, AMissingNumberDoesNotCountInAnAverage) {
+  const auto table = read("time_s,x\n0,1\n1,\n2,5\n3,7\n4,9\n5,\n", {}, 6);
+  ASSERT_TRUE(table);
+  EXPECT_THAT(table->column("x"), ElementsAre(1.0, 6.0, 9.0));
+}
+
+TEST_F(ReadCsv, ManyShortSegmentsStayApart) {
+  std::string text = "segment,rate_deg_per_h\n";
+  for (int i = 0; i < 60; ++i) text += std::to_string(i) + "," + std::to_string(i) + "\n";
+  const auto table = read(text, {}, 8);
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rows(), 60U);
 }
 
 }  // namespace
