@@ -16,11 +16,11 @@ namespace {
 /// Twice what hidraw keeps: a device that fills it faster than this is read is broken.
 constexpr int kMostQueued = 128;
 
-struct Closer {
+struct HidCloser {
   void operator()(hid_device* device) const { hid_close(device); }
 };
 struct HidDevice {
-  std::unique_ptr<hid_device, Closer> handle;
+  std::unique_ptr<hid_device, HidCloser> handle;
 };
 
 /// Serial numbers are ASCII; whatever else a device says becomes a question mark.

@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// What a controller may take to think; the time on the wire comes on top.
-constexpr Clock::Duration kAnswerTimeout = 500ms;
+constexpr Clock::Duration kModbusTimeout = 500ms;
 /// A frame on a serial line ends with a silence of 3.5 characters, 1.75 ms above 19200 baud
 /// (Modbus over serial line V1.02, 2.5.1.1).
 constexpr double kSilentCharacters = 3.5;
@@ -27,7 +27,7 @@ constexpr double kBitsPerCharacter = 11.0;
 /// Unit, function, address, count, byte count and check value of request and answer together.
 constexpr std::size_t kFrameBytes = 24;
 
-struct Closer {
+struct ModbusCloser {
   void operator()(modbus_t* line) const {
     modbus_close(line);
     modbus_free(line);
@@ -36,7 +36,7 @@ struct Closer {
 
 /// An open line. Closed by its destructor.
 struct ModbusLine {
-  std::unique_ptr<modbus_t, Closer> context;
+  std::unique_ptr<modbus_t, ModbusCloser> context;
 };
 
 Error last_error(const std::string& what) {
@@ -54,7 +54,7 @@ Result<std::unique_ptr<ModbusLine>> connect(modbus_t* made, const std::string& w
   if (made == nullptr) return last_error(where);
   auto line = std::make_unique<ModbusLine>();
   line->context.reset(made);
-  set_timeout(made, kAnswerTimeout);
+  set_timeout(made, kModbusTimeout);
   // Without a limit between bytes, the limit of the answer holds for the whole of it.
   modbus_set_byte_timeout(made, 0, 0);
   modbus_set_error_recovery(made, MODBUS_ERROR_RECOVERY_NONE);
@@ -102,7 +102,7 @@ class ModbusPort final : public ModbusTransport {
     if (!line) return line.error();
     modbus_t* context = (*line)->context.get();
     if (is_serial()) {
-      set_timeout(context, kAnswerTimeout + character_ * (kFrameBytes + 2 * words));
+      set_timeout(context, kModbusTimeout + character_ * (kFrameBytes + 2 * words));
       SteadyClock().sleep_for(std::max(from_seconds(kShortestSilence_s),
                                        from_seconds(kSilentCharacters * to_seconds(character_))));
     }
@@ -129,7 +129,7 @@ class ModbusPort final : public ModbusTransport {
   }
 
   static void drop_late_answer(int fd) {
-    const Deadline deadline(kAnswerTimeout);
+    const Deadline deadline(kModbusTimeout);
     std::array<std::byte, 256> dropped;
     pollfd arrived{fd, POLLIN, 0};
     while (::poll(&arrived, 1, deadline.left_ms()) > 0) {

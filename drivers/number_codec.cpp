@@ -33,8 +33,8 @@ const TypeInfo& info(NumberType type) {
 }
 
 /// Puts "field_x: " or "register target: " and the value in front of a codec's message.
-Error named(std::string_view what, std::string_view name, double value, std::string_view unit,
-            const Error& error) {
+Error of_number(std::string_view what, std::string_view name, double value, std::string_view unit,
+                const Error& error) {
   return {error.code, fmt::format("{} {} = {} {}: {}", what, name, value, unit, error.message)};
 }
 
@@ -88,7 +88,7 @@ Status write_field(const FieldSpec& field, ByteOrder order, double value,
   const std::size_t count = byte_count(field.type);
   assert(field.offset_bytes + count <= report.size());
   const auto bits = bits_from_number(field.type, (value - field.offset) / field.scale);
-  if (!bits) return named("field", field.name, value, field.unit, bits.error());
+  if (!bits) return of_number("field", field.name, value, field.unit, bits.error());
   store_bytes(report.data() + field.offset_bytes, count, order, *bits);
   return {};
 }
@@ -111,7 +111,7 @@ Result<double> read_words(const RegisterSpec& spec, std::span<const std::uint16_
 Status write_words(const RegisterSpec& spec, double value, std::span<std::uint16_t> words) {
   assert(words.size() == word_count(spec.type));
   const auto bits = bits_from_number(spec.type, (value - spec.offset) / spec.scale);
-  if (!bits) return named("register", spec.name, value, spec.unit, bits.error());
+  if (!bits) return of_number("register", spec.name, value, spec.unit, bits.error());
   // A negative int8 fills its register with the sign, as a controller's own 16-bit arithmetic does.
   const auto low = static_cast<std::uint16_t>(*bits);
   if (words.size() == 1) {

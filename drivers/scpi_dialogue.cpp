@@ -19,7 +19,7 @@ using config::one_line;
 using namespace std::chrono_literals;
 
 constexpr Clock::Duration kAnswerTimeout = 1s;
-constexpr int kAttempts = 2;
+constexpr int kQuestions = 2;
 /// Queues hold 10 to 30 entries; one that does not end is broken.
 constexpr int kMostErrors = 64;
 /// SCPI-99, 7.2.1.4 and 5: an instrument's words for infinity and not-a-number.
@@ -124,7 +124,7 @@ Result<std::string> ScpiDialogue::query(const std::string& question) {
   if (const Status resumed = resume(); !resumed) return resumed.error();
   Error failure{ErrorCode::kTimeout, ""};
   std::string queue;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; attempt < kQuestions; ++attempt) {
     auto answer = ask(question);
     if (answer) return answer;
     failure = answer.error();
@@ -142,7 +142,7 @@ Result<std::string> ScpiDialogue::query(const std::string& question) {
 
 Result<double> ScpiDialogue::query_number(const std::string& question) {
   std::string says;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; attempt < kQuestions; ++attempt) {
     const auto answer = query(question);
     if (!answer) return answer.error();
     const auto value = parse_scpi_number(*answer);

@@ -11,7 +11,7 @@
 namespace fogbench::drivers {
 namespace {
 
-constexpr Clock::Duration kWriteTimeout = std::chrono::seconds{1};
+constexpr Clock::Duration kTransferTimeout = std::chrono::seconds{1};
 
 struct Conversation {
   explicit Conversation(std::unique_ptr<UsbBulk> opened) : usb(std::move(opened)), talk(*usb) {}
@@ -33,7 +33,7 @@ class UsbtmcPort final : public MessageTransport {
     return reached ? Status{} : reached.error();
   }
   Status write(std::string_view message) override {
-    return with([&](Usbtmc& talk) { return talk.write(message, kWriteTimeout); });
+    return with([&](Usbtmc& talk) { return talk.write(message, kTransferTimeout); });
   }
   Result<std::string> read(Clock::Duration timeout) override {
     return with([&](Usbtmc& talk) { return talk.read(timeout); });

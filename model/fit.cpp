@@ -17,7 +17,7 @@ namespace {
 /// Two-sided probability of k = 2 for a normal deviate.
 constexpr double kCoverage = 0.954499736;
 /// Coloured noise is estimated on at most this many windows.
-constexpr std::size_t kMostWindows = 10'000;
+constexpr std::size_t kMostFittedWindows = 10'000;
 /// Below this many rows beyond the unknowns a noise spectrum cannot be told from a constant.
 constexpr std::size_t kEnoughRows = 20;
 
@@ -159,7 +159,7 @@ Result<bool> choose_coloured(FitWork& work) {
       work.observations.taken().size() >= static_cast<std::size_t>(work.unknowns()) + kEnoughRows;
   const bool timed = work.table.has("time_s") && work.table.has("duration_s");
   if (wanted == FitOptions::Noise::kAuto && (!timed || !enough)) return false;
-  const Status windows = work.observations.use_windows(kMostWindows);
+  const Status windows = work.observations.use_windows(kMostFittedWindows);
   if (windows) return true;
   if (wanted == FitOptions::Noise::kColoured) return windows.error();
   work.result.warnings.push_back("the noise is taken as independent: " + windows.error().message);
@@ -196,7 +196,7 @@ Result<FitResult> hold(FitWork work) {
     result.coloured = free->coloured;
     result.standard_deviation = free->standard_deviation;
     result.whitened = result.residual.cwiseQuotient(result.standard_deviation);
-    if (result.coloured && work.observations.use_windows(kMostWindows)) {
+    if (result.coloured && work.observations.use_windows(kMostFittedWindows)) {
       if (Status noise = fill_coloured_noise(work); !noise) return noise.error();
     }
   } else {

@@ -19,9 +19,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastWeight = 1e-4;
+constexpr double kLeastShapeWeight = 1e-4;
 // Below this nothing could be told about the shape of noise whose size is unknown as well.
-constexpr double kFewestFreeRows = 10.0;
+constexpr double kFewestRowsForNoise = 10.0;
 constexpr double kRankThreshold = 1e-10;
 // deg/sqrt(h): far below any gyro and above the rounding of its numbers; keeps a perfect fit
 // finite.
@@ -45,7 +45,7 @@ double log_gamma_p(double a, double x) {
 }
 
 /// Columns of X that are linearly independent of those kept before them, by pivoted QR.
-std::vector<Index> independent_columns(const MatrixXd& x) {
+std::vector<Index> determined_columns(const MatrixXd& x) {
   if (x.cols() == 0) return {};  // every term is held
   VectorXd norms = x.colwise().norm();
   for (double& norm : norms) norm = norm > 0.0 ? norm : 1.0;
@@ -67,7 +67,7 @@ struct Solution {
 class Problem {
  public:
   Problem(const NoiseShapes& shapes, const MatrixXd& x, const VectorXd& y)
-      : shapes_(shapes), kept_(independent_columns(x)) {
+      : shapes_(shapes), kept_(determined_columns(x)) {
     joined_.resize(x.rows(), static_cast<Index>(kept_.size()) + 1);
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       joined_.col(static_cast<Index>(i)) = x.col(kept_[i]);
@@ -256,7 +256,7 @@ Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const Vector
   GlsResult result;
   result.degrees_of_freedom = problem.nu();
   result.noise.anchored = shapes.anchor() > 0.0;
-  const bool too_few = !result.noise.anchored && problem.nu() < kFewestFreeRows;
+  const bool too_few = !result.noise.anchored && problem.nu() < kFewestRowsForNoise;
 
   std::vector<Solution> solutions;
   std::size_t best = 0;
@@ -278,14 +278,14 @@ Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const Vector
   double total = 0.0;
   for (const Solution& s : solutions) {
     const double weight = std::exp(s.log_weight - top);
-    if (weight > kLeastWeight) total += weight;
+    if (weight > kLeastShapeWeight) total += weight;
   }
   const Index rank = problem.rank();
   VectorXd mean = VectorXd::Zero(rank);
   MatrixXd second = MatrixXd::Zero(rank, rank);
   for (std::size_t i = 0; i < solutions.size(); ++i) {
     const double raw = std::exp(solutions[i].log_weight - top);
-    if (raw <= kLeastWeight) continue;
+    if (raw <= kLeastShapeWeight) continue;
     const double weight = raw / total;
     const double white2 = too_few ? problem.best_white_squared(solutions[i])
                                   : problem.mean_white_squared(solutions[i]);
@@ -296,7 +296,7 @@ Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const Vector
   }
   for (std::size_t i = 0; i < solutions.size(); ++i) {
     const double raw = std::exp(solutions[i].log_weight - top);
-    if (raw <= kLeastWeight) continue;
+    if (raw <= kLeastShapeWeight) continue;
     const VectorXd off = problem.beta(solutions[i]) - mean;
     second += raw / total * off * off.transpose();
   }

@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kDraws = 9999;
+constexpr int kWorlds = 9999;
 // Coloured noise over more rows than this is followed on joined windows.
 constexpr std::size_t kMostWindows = 10000;
 // With many rows the plausible noise models are few and alike; those below this weight are not
@@ -357,7 +357,7 @@ VectorXd RegionNoise::family_wise(const VectorXd& z, std::uint64_t seed) const {
   std::chi_squared_distribution<double> rest(std::max(unseen, 1.0));
   std::vector<double> largest;
   VectorXd draw(static_cast<Index>(kept.size()));
-  for (int i = 0; i < kDraws; ++i) {
+  for (int i = 0; i < kWorlds; ++i) {
     for (double& value : draw) value = normal(random);
     double size = 1.0;
     if (estimated) {
@@ -375,7 +375,7 @@ VectorXd RegionNoise::family_wise(const VectorXd& z, std::uint64_t seed) const {
     if (value == 0.0) continue;
     const auto at_least = static_cast<double>(
         largest.end() - std::lower_bound(largest.begin(), largest.end(), value * (1.0 - 1e-9)));
-    double p = (1.0 + at_least) / (1.0 + kDraws);
+    double p = (1.0 + at_least) / (1.0 + kWorlds);
     if (at_least == 0.0) {  // beyond the draws: Bonferroni's bound
       if (!estimated) p = std::min(p, tested * std::erfc(value / std::numbers::sqrt2));
     }

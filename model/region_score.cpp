@@ -17,10 +17,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kMostDraws = 999;
-constexpr double kOperations = 4e9;  // in all draws: under two seconds
-constexpr Index kBlock = 128;        // draws at a time: what is made of them stays in the cache
+constexpr double kOperations = 4e9;   // in all draws: under two seconds
+constexpr Index kDrawsAtATime = 128;  // draws at a time: what is made of them stays in the cache
 // Of a region's indicator this part must be left after the fitted columns, or nothing can be said.
-constexpr double kLeastLeft = 1e-3;
+constexpr double kLeastRemaining = 1e-3;
 
 /// log sum exp, term by term, of a table of numbers.
 class LogSum {
@@ -101,14 +101,15 @@ RegionScores score_regions(const NoiseShapes& shapes, const MatrixXd& x, const V
     }
     VectorXd scale = u.colwise().norm();
     for (Index g = 0; g < regions; ++g) {
-      scale[g] = scale[g] > kLeastLeft * whole[g] ? 1.0 / scale[g] : 0.0;
+      scale[g] = scale[g] > kLeastRemaining * whole[g] ? 1.0 / scale[g] : 0.0;
     }
     u *= scale.asDiagonal();
     const auto nu = static_cast<double>(n - q.cols());
     if (!evidence || evidence->nu() != nu) evidence.emplace(nu, shapes.anchor());
     const double base = shapes.log_prior(k) - log_determinant;
-    for (Index first = 0; first <= draws; first += kBlock) {
-      MatrixXd e = whitener->whiten(data.middleCols(first, std::min(kBlock, draws + 1 - first)));
+    for (Index first = 0; first <= draws; first += kDrawsAtATime) {
+      MatrixXd e =
+          whitener->whiten(data.middleCols(first, std::min(kDrawsAtATime, draws + 1 - first)));
       if (q.cols() > 0) e -= q * (q.transpose() * e);
       const MatrixXd score = u.transpose() * e;
       for (Index i = 0; i < e.cols(); ++i) {

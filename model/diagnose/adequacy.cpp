@@ -11,19 +11,20 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kDraws = 499;
+constexpr Index kAdequacyDraws = 499;
 constexpr std::size_t kMostNames = 3;
 // Smooth blocks have up to six columns.
-constexpr Index kFewestFreeRows = 12;
+constexpr Index kFewestRowsForShapes = 12;
 
 }  // namespace
 
 Adequacy check_adequacy(const NoiseShapes& shapes, const Eigen::MatrixXd& base, const VectorXd& y,
                         const Library& smooth, std::uint64_t seed) {
   Adequacy out;
-  if (base.rows() - base.cols() < kFewestFreeRows || smooth.candidates.empty()) return out;
+  if (base.rows() - base.cols() < kFewestRowsForShapes || smooth.candidates.empty()) return out;
   const Detector detector(shapes, base, smooth, y);
-  const Calibration calibration(detector.lambdas_at_null_noise(detector.draw(kDraws, seed)));
+  const Calibration calibration(
+      detector.lambdas_at_null_noise(detector.draw(kAdequacyDraws, seed)));
   const VectorXd lead = calibration.lead(detector.observed_at_null_noise());
   std::vector<Index> testable;
   for (Index c = 0; c < lead.size(); ++c) {

@@ -28,7 +28,7 @@ std::string formula_of(const std::string& effect) {
   return known ? escaped(std::string(known->info().formula)) : "";
 }
 
-std::string listed(const std::vector<std::string>& items) {
+std::string escaped_list(const std::vector<std::string>& items) {
   return escaped(fmt::format("{}", fmt::join(items, ", ")));
 }
 
@@ -188,7 +188,7 @@ std::string not_testable_section(const Diagnosis& d) {
   }
   std::string out = "<h2>What these data cannot test</h2>\n<ul>\n";
   for (const auto& [because, effects] : reasons) {
-    out += fmt::format("<li>{}: {}.</li>\n", listed(effects), escaped(because));
+    out += fmt::format("<li>{}: {}.</li>\n", escaped_list(effects), escaped(because));
   }
   return out + "</ul>\n";
 }
@@ -197,11 +197,11 @@ std::string next_section(const Diagnosis& d) {
   if (d.next_measurements.empty()) return "";
   std::string out = "<h2>What to measure next</h2>\n<ul>\n";
   for (const NextMeasurement& next : d.next_measurements) {
-    out += fmt::format(
-        "<li>{}.{}</li>\n", escaped(next.action),
-        next.tells_apart.empty()
-            ? ""
-            : fmt::format(" <span class=\"soft\">Shows: {}.</span>", listed(next.tells_apart)));
+    out += fmt::format("<li>{}.{}</li>\n", escaped(next.action),
+                       next.tells_apart.empty()
+                           ? ""
+                           : fmt::format(" <span class=\"soft\">Shows: {}.</span>",
+                                         escaped_list(next.tells_apart)));
   }
   return out + "</ul>\n";
 }

@@ -27,7 +27,7 @@ constexpr double kHopeless = 24.0;
 constexpr double kBeyondWalk = 2e-3;
 // An effect may take this many further values of its inner parameter before what is left counts as
 // something else.
-constexpr std::size_t kMostShapes = 3;
+constexpr std::size_t kMostFurtherShapes = 3;
 // An added effect stays when dropping it is refuted at this level.
 constexpr double kStays = 0.02;
 // The model needs this many rows beyond its terms, or nothing can be said of noise or structure.
@@ -141,7 +141,7 @@ class Search {
     for (Found& f : found()) {
       const auto own = static_cast<Index>(f.candidate);
       const Candidate& candidate = stage.candidate(own);
-      if (f.more.size() >= kMostShapes || !stage.detector().testable(own)) continue;
+      if (f.more.size() >= kMostFurtherShapes || !stage.detector().testable(own)) continue;
       const double lag = stage.lead()[leader] - stage.lead()[own];
       const bool as_well =
           own == leader || (!candidate.instant() && lag < kHopeless &&

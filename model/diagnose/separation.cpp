@@ -107,7 +107,7 @@ config::ModelFile without(config::ModelFile model, const std::vector<const Effec
   return model;
 }
 
-MatrixXd triangle_of(const MatrixXd& rows) {
+MatrixXd upper_triangle(const MatrixXd& rows) {
   const Index n = std::min(rows.rows(), rows.cols());
   const Eigen::HouseholderQR<MatrixXd> qr(rows);
   return qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
@@ -152,7 +152,7 @@ Separation::Separation(const Recorded& present, const config::ModelFile& fitted,
   const MatrixXd rows = whitened(present.windows, noise_, rows_of(present, false));
   base_ = rows.cols() - columns_;
   if (rows.rows() == 0) return;
-  triangle_ = triangle_of(rows);
+  triangle_ = upper_triangle(rows);
   present_gram_ = gram_of(triangle_, base_);
 }
 

@@ -30,7 +30,7 @@ constexpr double kNearlyAsQuick = 1.5;
 constexpr double kByHand = 1.5;
 // Walks that a rival may be, in shares of the variance of the walk that scatters like the effect.
 constexpr std::array<double, 6> kWalks = {0.0, 0.03, 0.1, 0.3, 1.0, 3.0};
-constexpr int kGridPoints = 30;
+constexpr int kFineGridPoints = 30;
 
 /// Does an effect with a memory move in a run that the diagnosis would not test it in (a thermal
 /// hysteresis without a cooling branch, say)? Its state there is a guess, and what tells effects
@@ -155,7 +155,8 @@ MatrixXd SetChoice::squared(const Separation& separation, const std::vector<Walk
 void SetChoice::weigh(const std::vector<Experiment>& experiments) {
   std::vector<std::vector<double>> inner(effects_.size());
   inner.front() = leader_inner_;
-  const Separation separation(present_, input_.fitted, effects_, inner, input_.noise, kGridPoints);
+  const Separation separation(present_, input_.fitted, effects_, inner, input_.noise,
+                              kFineGridPoints);
   if (separation.present().size() == 0) return;
   find_truths(separation);
   std::vector<Walk> walks;

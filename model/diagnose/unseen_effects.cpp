@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 // An experiment that shows an effect this much less well than the best one still shows it.
 constexpr double kShowsAsWell = 0.2;
-constexpr int kGridPoints = 4;
+constexpr int kCoarseGridPoints = 4;
 constexpr std::size_t kMostNamed = 4;  // in one line; the rest is counted
 
 /// The instrument that a column comes from, for people.
@@ -43,7 +43,7 @@ MatrixXd visibility(const NextMeasurementInput& input, const Recorded& present,
   if (effects.empty()) return shown;
   const Separation separation(present, input.fitted, effects,
                               std::vector<std::vector<double>>(effects.size()), input.noise,
-                              kGridPoints);
+                              kCoarseGridPoints);
   if (separation.present().size() == 0) return shown;
   for (std::size_t e = 0; e < experiments.size(); ++e) {
     const Recorded& record = experiments[e].record;
