@@ -306,14 +306,15 @@ class CsvReader {
     return {};
   }
 
-  /// Twice as many rows of the file in each row of the table.
+  /// The new rows as those before them; where that does not halve the table, twice as many rows of
+  /// the file in each of its rows.
   void average_neighbours() {
     if (out_of_order()) {
       most_rows_ = kEveryRow;
       return;
     }
-    rows_averaged_ *= 2;
-    average_neighbours(rows_averaged_);
+    if (rows_averaged_ > 1) average_neighbours(rows_averaged_);
+    if (stored_ > most_rows_ / 2) average_neighbours(rows_averaged_ *= 2);
     // Rows of many short segments stay many.
     if (stored_ > most_rows_ / 2) most_rows_ *= 2;
   }

@@ -234,6 +234,14 @@ TEST_F(ReadCsv, AveragesNeighboursOfASegmentWhereRowsAreManyMoreThanAsked) {
   EXPECT_EQ(table->segment().at(13), "down");
 }
 
+TEST_F(ReadCsv, AveragesNoMoreThanItMust) {
+  const auto table = read(long_text(4000), {}, 300);
+  ASSERT_TRUE(table);
+  EXPECT_GE(table->rows(), 150U);
+  EXPECT_LE(table->rows(), 300U);
+  EXPECT_EQ(table->column("rate_deg_per_h")[0], 15.5);
+}
+
 TEST_F(ReadCsv, KeepsEveryRowWhereTheyAreFew) {
   const auto table = read(long_text(50), {}, 101);
   ASSERT_TRUE(table);
