@@ -306,17 +306,17 @@ class CsvReader {
     return {};
   }
 
-  /// The new rows as those before them; where that does not halve the table, twice as many rows of
-  /// the file in each of its rows.
+  /// The new rows as those before them; where that frees less than a quarter of the table, twice as
+  /// many rows of the file in each of its rows.
   void average_neighbours() {
     if (out_of_order()) {
       most_rows_ = kEveryRow;
       return;
     }
     if (rows_averaged_ > 1) average_neighbours(rows_averaged_);
-    if (stored_ > most_rows_ / 2) average_neighbours(rows_averaged_ *= 2);
+    if (stored_ > most_rows_ / 4 * 3) average_neighbours(rows_averaged_ *= 2);
     // Rows of many short segments stay many.
-    if (stored_ > most_rows_ / 2) most_rows_ *= 2;
+    if (stored_ > most_rows_ / 4 * 3) most_rows_ *= 2;
   }
 
   void average_neighbours(std::size_t rows) {
