@@ -99,6 +99,8 @@ class Line {
   ~Line() {
     eventfd_write(stop_.get(), 1);
     thread_.join();
+    // A pseudo-terminal would stay closed to others for as long as its other side is open.
+    ioctl(fd(), TIOCNXCL);
   }
 
   int fd() const { return fd_->get(); }

@@ -50,16 +50,17 @@ Status PseudoTerminal::plug() {
   return {};
 }
 
-void PseudoTerminal::make_fresh() {
+bool PseudoTerminal::make_fresh() {
   // The host's side, for a moment: only once it has been closed does ours say that it is.
   const FileDescriptor theirs(::open(name_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (!theirs) return;
+  if (!theirs) return false;
   termios settings{};
   if (tcgetattr(theirs.get(), &settings) == 0) {
     cfmakeraw(&settings);
     tcsetattr(theirs.get(), TCSANOW, &settings);
   }
   tcflush(theirs.get(), TCIOFLUSH);
+  return true;
 }
 
 bool PseudoTerminal::in_use() {
@@ -67,7 +68,12 @@ bool PseudoTerminal::in_use() {
   pollfd ours{ours_.get(), 0, 0};
   poll(&ours, 1, 0);
   const bool used = (ours.revents & POLLHUP) == 0;
-  if (was_in_use_ && !used) make_fresh();
+  if (was_in_use_ && !used && !make_fresh()) {
+    // A host that was killed has left it closed to all others: there is no way back but a new one.
+    unplug();
+    static_cast<void>(plug());
+    return false;
+  }
   was_in_use_ = used;
   return used;
 }

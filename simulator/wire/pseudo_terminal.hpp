@@ -39,8 +39,8 @@ class PseudoTerminal {
 
  private:
   explicit PseudoTerminal(std::filesystem::path link) : link_(std::move(link)) {}
-  /// As a host finds it: raw, and with nothing in it.
-  void make_fresh();
+  /// As a host finds it: raw, and with nothing in it. False when it cannot be opened.
+  bool make_fresh();
 
   std::filesystem::path link_;
   FileDescriptor ours_;
