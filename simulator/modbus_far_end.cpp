@@ -68,7 +68,8 @@ Status ModbusFarEnd::check_count(std::size_t count) {
 
 std::string_view ModbusFarEnd::write_operation(std::uint16_t address) const {
   const auto found = by_address_.find(address);
-  const std::string_view name = found == by_address_.end() ? "" : found->second->name;
+  if (found == by_address_.end()) return "";
+  const std::string& name = found->second->name;
   return name == "target" ? "set_target" : name == "mode" ? "set_mode" : "";
 }
 
