@@ -4,17 +4,13 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "cli/command.hpp"
 #include "cli/describe_device.hpp"
 #include "cli/output.hpp"
-#include "config/connection.hpp"
-#include "drivers/hid_port.hpp"
-#include "drivers/line_messages.hpp"
-#include "drivers/modbus_port.hpp"
+#include "drivers/open_ports.hpp"
 #include "drivers/probe.hpp"
-#include "drivers/serial_port.hpp"
-#include "drivers/usbtmc_port.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -27,64 +23,19 @@ struct ProbeOptions {
   bool json = false;
 };
 
-/// What instruments with SCPI over a serial line are delivered with.
-constexpr std::uint32_t kScpiBaud = 9600;
-
-/// Opens what the connection names, for the kind of instrument that the description is of.
-class Prober {
- public:
-  Prober(const ProbeOptions& options, const config::Connection& connection)
-      : options_(options), connection_(connection) {}
-
-  Result<ProbeReport> operator()(const config::ModbusDevice& device) {
-    if (const auto* tcp = std::get_if<config::TcpConnection>(&connection_)) {
-      return through(drivers::open_modbus(*tcp, device.unit_id, clock_), device);
-    }
-    if (const auto* rtu = std::get_if<config::RtuConnection>(&connection_)) {
-      return through(drivers::open_modbus(*rtu, device.unit_id, clock_), device);
-    }
-    return wrong("tcp: or rtu:, as of a Modbus instrument");
+/// Opens what the connection names, for the kind of instrument that the description is of, and
+/// asks.
+template <class Device>
+Result<ProbeReport> probe_at(const Device& device, const std::string& connection) {
+  drivers::SteadyClock clock;
+  const auto port = drivers::open_port(device, connection, clock);
+  if (!port) return port.error();
+  if constexpr (std::is_same_v<Device, config::FrameDevice>) {
+    return drivers::probe(device, **port, clock);  // a stream is listened to for a while
+  } else {
+    return drivers::probe(device, **port);
   }
-  Result<ProbeReport> operator()(const config::ScpiDevice& device) {
-    if (const auto* usb = std::get_if<config::UsbConnection>(&connection_)) {
-      return through(drivers::open_usbtmc(*usb, clock_), device);
-    }
-    const auto* tty = std::get_if<config::TtyConnection>(&connection_);
-    if (tty == nullptr) return wrong("usb: or tty:, as of a SCPI instrument");
-    auto line = drivers::open_serial(tty->tty, tty->baud.value_or(kScpiBaud), clock_);
-    if (!line) return line.error();
-    drivers::LineMessages messages(std::move(*line), clock_);
-    return drivers::probe(device, messages);
-  }
-  Result<ProbeReport> operator()(const config::HidDevice& device) {
-    const auto* hid = std::get_if<config::HidConnection>(&connection_);
-    if (hid == nullptr) return wrong("hid:, as of a HID instrument");
-    return through(drivers::open_hid(*hid, clock_), device);
-  }
-  Result<ProbeReport> operator()(const config::FrameDevice& device) {
-    const auto* tty = std::get_if<config::TtyConnection>(&connection_);
-    if (tty == nullptr) return wrong("tty:, as of a gyro that streams frames");
-    auto line = drivers::open_serial(tty->tty, tty->baud.value_or(device.baud), clock_);
-    if (!line) return line.error();
-    return drivers::probe(device, **line, clock_);
-  }
-
- private:
-  template <class Transport, class Device>
-  static Result<ProbeReport> through(Result<std::unique_ptr<Transport>> transport,
-                                     const Device& device) {
-    if (!transport) return transport.error();
-    return drivers::probe(device, **transport);
-  }
-  Error wrong(const char* expected) const {
-    return {ErrorCode::kBadInput,
-            fmt::format("--connection: found \"{}\", expected {}", options_.connection, expected)};
-  }
-
-  const ProbeOptions& options_;
-  const config::Connection& connection_;
-  drivers::SteadyClock clock_;
-};
+}
 
 nlohmann::ordered_json to_json(const ProbeReport& report) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -118,11 +69,8 @@ void print(const ProbeReport& report) {
 Result<ExitStatus> run_probe(const ProbeOptions& options) {
   const auto device = read_device(options.device);
   if (!device) return device.error();
-  const auto connection = config::parse_connection(options.connection);
-  if (!connection) {
-    return Error{connection.error().code, "--connection: " + connection.error().message};
-  }
-  const auto report = std::visit(Prober(options, *connection), *device);
+  const auto report =
+      std::visit([&](const auto& its) { return probe_at(its, options.connection); }, *device);
   if (!report) return report.error();
   if (options.json) {
     print_json(to_json(*report));

@@ -19,54 +19,16 @@ constexpr std::uint32_t kScpiBaud = 9600;
 template <class Transport>
 using Opened = Result<std::unique_ptr<Transport>>;
 
-Error wrong(const config::InstrumentConfig& instrument, const char* expected) {
+Error wrong(const std::string& connection, const char* expected) {
   return {ErrorCode::kBadInput,
-          fmt::format("connection: found \"{}\", expected {}", instrument.connection, expected)};
+          fmt::format("connection: found \"{}\", expected {}", connection, expected)};
 }
 
-Opened<ModbusTransport> open_thermostat(const config::ThermostatConfig& thermostat, Clock& clock) {
-  const auto connection = config::parse_connection(thermostat.connection);
-  if (!connection) return connection.error();
-  const std::uint8_t unit = thermostat.device.unit_id;
-  if (const auto* tcp = std::get_if<config::TcpConnection>(&*connection)) {
-    return open_modbus(*tcp, unit, clock);
-  }
-  if (const auto* rtu = std::get_if<config::RtuConnection>(&*connection)) {
-    return open_modbus(*rtu, unit, clock);
-  }
-  return wrong(thermostat, "tcp: or rtu:, as of a real bench");
-}
-
-Opened<MessageTransport> open_scpi(const config::InstrumentConfig& instrument, Clock& clock) {
-  const auto connection = config::parse_connection(instrument.connection);
-  if (!connection) return connection.error();
-  if (const auto* usb = std::get_if<config::UsbConnection>(&*connection)) {
-    return open_usbtmc(*usb, clock);
-  }
-  if (const auto* tty = std::get_if<config::TtyConnection>(&*connection)) {
-    auto serial = open_serial(tty->tty, tty->baud.value_or(kScpiBaud), clock);
-    if (!serial) return serial.error();
-    return Opened<MessageTransport>(std::make_unique<LineMessages>(std::move(*serial), clock));
-  }
-  return wrong(instrument, "usb: or tty:, as of a real bench");
-}
-
-Opened<HidTransport> open_magnetometer(const config::InstrumentConfig& magnetometer, Clock& clock) {
-  const auto connection = config::parse_connection(magnetometer.connection);
-  if (!connection) return connection.error();
-  if (const auto* hid = std::get_if<config::HidConnection>(&*connection)) {
-    return open_hid(*hid, clock);
-  }
-  return wrong(magnetometer, "hid:, as of a real bench");
-}
-
-Opened<SerialTransport> open_gyro(const config::GyroConfig& gyro, Clock& clock) {
-  const auto connection = config::parse_connection(gyro.connection);
-  if (!connection) return connection.error();
-  if (const auto* tty = std::get_if<config::TtyConnection>(&*connection)) {
-    return open_serial(tty->tty, tty->baud.value_or(gyro.device.baud), clock);
-  }
-  return wrong(gyro, "tty:, as of a real bench");
+/// The connection, or the error that says why the text is none.
+Result<config::Connection> parsed(const std::string& text) {
+  auto connection = config::parse_connection(text);
+  if (connection) return connection;
+  return Error{connection.error().code, "connection: " + connection.error().message};
 }
 
 /// Moves what was opened to its place in the transports.
@@ -79,20 +41,69 @@ Status take(const char* name, Opened<Transport> opened, std::unique_ptr<Transpor
 
 }  // namespace
 
+Opened<ModbusTransport> open_port(const config::ModbusDevice& device, const std::string& connection,
+                                  Clock& clock) {
+  const auto place = parsed(connection);
+  if (!place) return place.error();
+  if (const auto* tcp = std::get_if<config::TcpConnection>(&*place)) {
+    return open_modbus(*tcp, device.unit_id, clock);
+  }
+  if (const auto* rtu = std::get_if<config::RtuConnection>(&*place)) {
+    return open_modbus(*rtu, device.unit_id, clock);
+  }
+  return wrong(connection, "tcp: or rtu:, as of a Modbus instrument");
+}
+
+Opened<MessageTransport> open_port(const config::ScpiDevice&, const std::string& connection,
+                                   Clock& clock) {
+  const auto place = parsed(connection);
+  if (!place) return place.error();
+  if (const auto* usb = std::get_if<config::UsbConnection>(&*place)) {
+    return open_usbtmc(*usb, clock);
+  }
+  if (const auto* tty = std::get_if<config::TtyConnection>(&*place)) {
+    auto serial = open_serial(tty->tty, tty->baud.value_or(kScpiBaud), clock);
+    if (!serial) return serial.error();
+    return Opened<MessageTransport>(std::make_unique<LineMessages>(std::move(*serial), clock));
+  }
+  return wrong(connection, "usb: or tty:, as of a SCPI instrument");
+}
+
+Opened<HidTransport> open_port(const config::HidDevice&, const std::string& connection,
+                               Clock& clock) {
+  const auto place = parsed(connection);
+  if (!place) return place.error();
+  if (const auto* hid = std::get_if<config::HidConnection>(&*place)) {
+    return open_hid(*hid, clock);
+  }
+  return wrong(connection, "hid:, as of a HID instrument");
+}
+
+Opened<SerialTransport> open_port(const config::FrameDevice& device, const std::string& connection,
+                                  Clock& clock) {
+  const auto place = parsed(connection);
+  if (!place) return place.error();
+  if (const auto* tty = std::get_if<config::TtyConnection>(&*place)) {
+    return open_serial(tty->tty, tty->baud.value_or(device.baud), clock);
+  }
+  return wrong(connection, "tty:, as of a gyro that streams frames");
+}
+
 Result<Transports> open_ports(const config::BenchConfig& config, Clock& clock) {
+  const auto open = [&clock](const auto& instrument) {
+    return open_port(instrument.device, instrument.connection, clock);
+  };
   Transports t;
-  Status status =
-      take("coil_horizontal", open_scpi(config.coil_horizontal, clock), t.coil_horizontal);
-  if (status)
-    status = take("coil_vertical", open_scpi(config.coil_vertical, clock), t.coil_vertical);
-  if (status) status = take("thermostat", open_thermostat(config.thermostat, clock), t.thermostat);
-  if (status) {
-    status = take("magnetometer", open_magnetometer(config.magnetometer, clock), t.magnetometer);
-  }
+  Status status = take("coil_horizontal", open(config.coil_horizontal), t.coil_horizontal);
+  if (status) status = take("coil_vertical", open(config.coil_vertical), t.coil_vertical);
+  if (status) status = take("thermostat", open(config.thermostat), t.thermostat);
+  if (status) status = take("magnetometer", open(config.magnetometer), t.magnetometer);
   if (status && config.turntable.motorised) {
-    status = take("turntable", open_scpi(config.turntable, clock), t.turntable);
+    status =
+        take("turntable", open_port(*config.turntable.device, config.turntable.connection, clock),
+             t.turntable);
   }
-  if (status) status = take("gyro", open_gyro(config.gyro, clock), t.gyro);
+  if (status) status = take("gyro", open(config.gyro), t.gyro);
   if (!status) return status.error();
   return t;
 }

@@ -65,7 +65,8 @@ TEST_F(OpenPortsTest, ASimulatedInstrumentOnARealBenchIsBadInput) {
 
 TEST_F(OpenPortsTest, AConnectionThatCannotBeReadIsBadInput) {
   config_.coil_horizontal.connection = "usb:1234";
-  EXPECT_THAT(failure(), HasSubstr("coil_horizontal: found \"usb:1234\", expected usb:VENDOR"));
+  EXPECT_THAT(failure(),
+              HasSubstr("coil_horizontal: connection: found \"usb:1234\", expected usb:VENDOR"));
   EXPECT_EQ(code_, ErrorCode::kBadInput);
 }
 
