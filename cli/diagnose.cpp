@@ -115,6 +115,7 @@ std::string few_of(const std::vector<std::string>& names) {
 void print_text(const model::Diagnosis& d, const DiagnoseOptions& options, std::string_view unit) {
   const std::string in(unit);
   for (const std::string& sentence : d.sentences) fmt::print("{}\n", sentence);
+  for (const std::string& warning : d.after.warnings) fmt::print("warning: {}\n", warning);
   fmt::print("\n");
   std::size_t shown = 0;
   constexpr std::size_t kMostFailures = 3;

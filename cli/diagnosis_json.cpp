@@ -97,6 +97,7 @@ ordered_json diagnosis_json(const model::Diagnosis& d, const std::string& next_s
           {"next_measurements", next},
           {"ladder", ladder},
           {"sentences", d.sentences},
+          {"warnings", d.after.warnings},
           {"next", next_step}};
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "model/reduction.hpp"
 #include "model/window_geometry.hpp"
 
 namespace fogbench::model {
@@ -44,19 +45,6 @@ double log_gamma_p(double a, double x) {
   return a * std::log(x) - x - std::lgamma(a + 1.0) + std::log(sum);
 }
 
-/// Columns of X that are linearly independent of those kept before them, by pivoted QR.
-std::vector<Index> determined_columns(const MatrixXd& x) {
-  if (x.cols() == 0) return {};  // every term is held
-  VectorXd norms = x.colwise().norm();
-  for (double& norm : norms) norm = norm > 0.0 ? norm : 1.0;
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(x * norms.cwiseInverse().asDiagonal());
-  qr.setThreshold(kRankThreshold);
-  std::vector<Index> kept;
-  for (Index i = 0; i < qr.rank(); ++i) kept.push_back(qr.colsPermutation().indices()[i]);
-  std::sort(kept.begin(), kept.end());
-  return kept;
-}
-
 /// One shape's part of the answer.
 struct Solution {
   MatrixXd r;  // triangle of the whitened [X y]
@@ -67,7 +55,7 @@ struct Solution {
 class Problem {
  public:
   Problem(const NoiseShapes& shapes, const MatrixXd& x, const VectorXd& y)
-      : shapes_(shapes), kept_(determined_columns(x)) {
+      : shapes_(shapes), kept_(independent_columns(x, x.cols(), kRankThreshold)) {
     joined_.resize(x.rows(), static_cast<Index>(kept_.size()) + 1);
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       joined_.col(static_cast<Index>(i)) = x.col(kept_[i]);

@@ -6,9 +6,6 @@
 namespace fogbench::model {
 namespace {
 
-/// A column that is a sum of others keeps some hundred roundings of its length.
-constexpr double kIndependent = 1e-13;
-
 Eigen::MatrixXd triangle_of(const Eigen::MatrixXd& rows) {
   const Eigen::Index n = rows.cols();
   Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
@@ -34,7 +31,10 @@ void Reduction::add(const Eigen::Ref<const Eigen::MatrixXd>& rows) {
   triangle_ = triangle_of(stacked);
 }
 
-std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& triangle, Eigen::Index count) {
+std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& columns, Eigen::Index count,
+                                              double dependent) {
+  if (count == 0) return {};
+  const Eigen::MatrixXd triangle = triangle_of(columns);
   std::vector<Eigen::Index> kept;
   const Eigen::VectorXd norms = column_norms(triangle);
   Eigen::MatrixXd chosen(triangle.rows(), 0);
@@ -42,7 +42,7 @@ std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& triangle, E
     Eigen::MatrixXd trial(triangle.rows(), chosen.cols() + 1);
     trial << chosen, triangle.col(j) / norms[j];
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(trial);
-    qr.setThreshold(kIndependent);
+    qr.setThreshold(dependent);
     if (qr.rank() < trial.cols()) continue;
     chosen = std::move(trial);
     kept.push_back(j);

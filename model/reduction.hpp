@@ -45,9 +45,11 @@ struct LinearFit {
 LinearFit fit_triangle(const Eigen::MatrixXd& triangle, Eigen::Index p,
                        const std::vector<Tangent>& tangents, Eigen::Index parameters);
 
-/// Columns of an upper triangle that are independent to rounding, each judged after those before
-/// it; the norm of a column is its scale.
-std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& triangle, Eigen::Index count);
+/// Of the first `count` columns those that are independent, each judged after those before it; the
+/// norm of a column is its scale. By default only rounding makes it dependent: a sum of others
+/// keeps some hundred roundings of its length.
+std::vector<Eigen::Index> independent_columns(const Eigen::MatrixXd& columns, Eigen::Index count,
+                                              double dependent = 1e-13);
 
 /// (R'R)^-1 for a square triangle of full rank, scaled column by column on the way.
 Eigen::MatrixXd inverse_gram(const Eigen::MatrixXd& triangle);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "model/diagnose/stage.hpp"
+#include "model/reduction.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -296,19 +297,7 @@ MatrixXd base_with(const SearchInput& input, const std::vector<Found>& found, co
 
 MatrixXd full_rank(const MatrixXd& columns) {
   constexpr double kDependent = 1e-8;
-  MatrixXd basis(columns.rows(), 0);
-  std::vector<Index> kept;
-  for (Index j = 0; j < columns.cols(); ++j) {
-    const double length = columns.col(j).norm();
-    if (!(length > 0.0)) continue;
-    VectorXd left = columns.col(j) / length;
-    for (int pass = 0; pass < 2; ++pass) left -= basis * (basis.transpose() * left).eval();
-    if (left.norm() < kDependent) continue;
-    basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
-    basis.rightCols(1) = left.normalized();
-    kept.push_back(j);
-  }
-  return columns(Eigen::all, kept);
+  return columns(Eigen::all, independent_columns(columns, columns.cols(), kDependent));
 }
 
 SearchResult search(const SearchInput& input, const SearchOptions& options) {

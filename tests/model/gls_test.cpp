@@ -78,6 +78,22 @@ TEST(Gls, SurvivesAPerfectFitAndAConstant) {
   }
 }
 
+// As cos and sin at two azimuths beside a bias: the later one gives way, however long it is, so
+// that the earlier coefficients keep their meaning.
+TEST(Gls, OfDependentColumnsTheEarlierOnesAreDetermined) {
+  const Windows windows = regular_windows(60, 60.0, 60.0);
+  MatrixXd x = MatrixXd::Zero(60, 3);
+  x.col(0).setConstant(0.1);
+  x.col(1).head(40).setOnes();
+  x.col(2).tail(20).setConstant(5.0);
+  const VectorXd y = 7.0 * x.col(0) + 0.05 * x.col(1) + draw(windows, {0.001, 0.0, 0.0, 0.0}, 3);
+  const auto result = gls(windows, x, y);
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_NEAR(result->beta[0], 7.0, 0.1);
+  EXPECT_NEAR(result->beta[1], 0.05, 0.01);
+  EXPECT_TRUE(std::isnan(result->covariance(2, 2)));
+}
+
 TEST(Gls, LeavesDependentColumnsUndetermined) {
   Windows windows = regular_windows(40, 180.0, 200.0);
   MatrixXd x(40, 3);

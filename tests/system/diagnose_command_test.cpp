@@ -61,7 +61,7 @@ TEST_F(DiagnoseCommandTest, JsonHasTheKeysThatScriptsRelyOn) {
   EXPECT_EQ(keys, (std::set<std::string>{"verdict", "p_adequate", "false_alarm_rate", "fit",
                                          "noise", "failures", "missing", "ambiguous", "unexplained",
                                          "not_testable", "bounds", "next_measurements", "ladder",
-                                         "sentences", "next"}));
+                                         "sentences", "warnings", "next"}));
   ASSERT_FALSE(document["missing"].empty());
   const auto& found = document["missing"][0];
   EXPECT_EQ(found["effect"], "my_wave");
