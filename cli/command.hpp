@@ -50,6 +50,14 @@ void add_diagnose(CLI::App& app, Action& action);
 void add_allan(CLI::App& app, Action& action);
 void add_challenge(CLI::App& app, Action& action);
 void add_reveal(CLI::App& app, Action& action);
+void add_run(CLI::App& app, Action& action);
+void add_status(CLI::App& app, Action& action);
+void add_watch(CLI::App& app, Action& action);
+void add_pause(CLI::App& app, Action& action);
+void add_resume(CLI::App& app, Action& action);
+void add_abort(CLI::App& app, Action& action);
+void add_answer(CLI::App& app, Action& action);
+void add_queue(CLI::App& app, Action& action);
 void add_device(CLI::App& app, Action& action);
 /// Of `fogbench device`.
 void add_device_probe(CLI::App& device, Action& action);

@@ -17,7 +17,8 @@ constexpr auto kDescription =
     "error model that goes with them. Results go to stdout, progress and messages to stderr.\n";
 
 constexpr auto kFooter =
-    "Exit status: 0 done, 1 the answer is no, 2 usage, 3 bad input, 4 bench or run log failed.\n"
+    "Exit status: 0 done, 1 the answer is no, 2 usage, 3 bad input, 4 bench, daemon or run log "
+    "failed.\n"
     "`fogbench COMMAND --help` shows a command's options and examples.";
 
 void add_commands(CLI::App& app, fogbench::cli::Action& action) {
@@ -36,6 +37,14 @@ void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_allan(app, action);
   fogbench::cli::add_challenge(app, action);
   fogbench::cli::add_reveal(app, action);
+  fogbench::cli::add_run(app, action);
+  fogbench::cli::add_status(app, action);
+  fogbench::cli::add_watch(app, action);
+  fogbench::cli::add_pause(app, action);
+  fogbench::cli::add_resume(app, action);
+  fogbench::cli::add_abort(app, action);
+  fogbench::cli::add_answer(app, action);
+  fogbench::cli::add_queue(app, action);
   fogbench::cli::add_device(app, action);
 }
 

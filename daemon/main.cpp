@@ -1,5 +1,6 @@
-// fogbenchd: runs procedures on a bench, simulated or real, in the foreground, one after the other,
-// and logs what it does. SIGTERM and SIGINT abort to the safe state.
+// fogbenchd: owns a bench, simulated or real. Without a procedure it serves the control socket and
+// runs what is queued there; with procedures it runs them in the foreground, one after the other,
+// and ends. SIGTERM and SIGINT abort to the safe state.
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -14,6 +15,7 @@
 #include "config/exit_status.hpp"
 #include "daemon/abort_on_signal.hpp"
 #include "daemon/run_options.hpp"
+#include "daemon/serve.hpp"
 #include "daemon/session.hpp"
 #include "daemon/simulated_operator.hpp"
 #include "daemon/store.hpp"
@@ -27,24 +29,36 @@ struct DaemonOptions {
   std::optional<std::uint64_t> seed;
   std::string store;
   Speed speed = Speed::kRealtime;
+  ServeOptions serve;
   std::vector<std::string> procedures;
 };
 
 void declare(CLI::App& app, DaemonOptions& options) {
   app.set_version_flag("--version", "fogbenchd " FOGBENCH_VERSION);
-  app.add_option("PROCEDURE", options.procedures, "Procedure files, or ready ones, in their order")
-      ->required();
+  CLI::Option* procedures = app.add_option(
+      "PROCEDURE", options.procedures,
+      "Procedure files, or ready ones, in their order (default: those that operators queue)");
   app.add_option("--bench", options.setup.bench, "A bench file, or a ready one")->required();
   app.add_option("--store", options.store, "Run log to write (default: $FOGBENCH_STORE...)");
   app.add_option("--scenario", options.setup.scenario,
                  "What the simulated gyro hides (default: clean)");
   add_seed_option(app, options.seed);
   add_speed_option(app, options.speed, "realtime");
+  app.add_option("--socket", options.serve.socket,
+                 "Control socket to serve (default: /run/fogbench/control.sock as root, else "
+                 "$XDG_RUNTIME_DIR/fogbench/control.sock)")
+      ->excludes(procedures);
+  app.add_option("--operators", options.serve.operators, "Group whose members may act")
+      ->excludes(procedures);
+  app.add_option("--observers", options.serve.observers,
+                 "Group whose members may look (default: everybody, when --operators is given)")
+      ->excludes(procedures);
   app.footer(
       "A bench whose instruments have connections is reached through them; a prompt is answered "
       "on\n"
-      "standard input.\n"
-      "Examples:\n  fogbenchd --bench simulated --speed max thermostat-steps coil-sweep\n"
+      "standard input, or over the control socket when no procedure is named.\n"
+      "Examples:\n  fogbenchd --bench bench.json --operators fogbench\n"
+      "  fogbenchd --bench simulated --speed max thermostat-steps coil-sweep\n"
       "  fogbenchd --bench bench.json coil-sweep\n"
       "Exit status: 0 done, 2 usage, 3 bad input, 4 bench or run log failed.");
 }
@@ -55,13 +69,12 @@ Status choose_bench(const DaemonOptions& options, Setup& setup) {
   if (!simulated) return simulated.error();
   setup.simulated = *simulated;
   if (setup.simulated) return {};
-  if (options.speed == Speed::kMaximum || options.seed ||
+  if (options.speed != Speed::kRealtime || options.seed ||
       options.setup.scenario != SetupOptions{}.scenario) {
-    return Error{
-        ErrorCode::kUsage,
-        fmt::format("--scenario, --seed and --speed max are for the simulated bench; bench "
-                    "{} is a real one",
-                    setup.bench.name)};
+    return Error{ErrorCode::kUsage,
+                 fmt::format("--scenario, --seed and --speed are for the simulated bench; bench "
+                             "{} is a real one",
+                             setup.bench.name)};
   }
   setup.scenario_json.clear();
   return {};
@@ -87,6 +100,9 @@ Status run(const DaemonOptions& options) {
     store = *standard;
   }
   const std::uint64_t seed = options.seed.value_or(random_seed());
+  if (planned.empty()) {
+    return serve(std::move(*setup), seed, store, options.speed, options.serve);
+  }
 
   SimulatedOperator obedient;
   TerminalOperator at_terminal(STDIN_FILENO, stderr, AbortOnSignal::asked);
@@ -131,7 +147,7 @@ Status run(const DaemonOptions& options) {
 
 int main(int argc, char** argv) {
   using fogbench::ExitStatus;
-  spdlog::set_default_logger(spdlog::stderr_logger_st("fogbenchd"));
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("fogbenchd"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %v");
   CLI::App app{"fogbenchd - runs acceptance procedures on a bench and logs them", "fogbenchd"};
   fogbench::daemon::DaemonOptions options;

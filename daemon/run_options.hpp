@@ -34,9 +34,26 @@ inline void add_seed_option(CLI::App& app, std::optional<std::uint64_t>& seed) {
 }
 
 inline void add_speed_option(CLI::App& app, Speed& speed, const std::string& standard) {
-  add_choice_option<Speed>(
-      app, "--speed", speed, {{"realtime", Speed::kRealtime}, {"max", Speed::kMaximum}},
-      "In real time, or as fast as the machine can (default: " + standard + ")");
+  constexpr double kSlowest = 1.0, kFastest = 1000.0;
+  const auto read = [](const std::string& text) -> std::optional<Speed> {
+    if (text == "realtime") return Speed::kRealtime;
+    if (text == "max") return Speed::kMaximum;
+    Speed speed_up;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, speed_up.factor);
+    const bool good = error == std::errc{} && end == last && speed_up.factor >= kSlowest &&
+                      speed_up.factor <= kFastest;
+    return good ? std::optional(speed_up) : std::nullopt;
+  };
+  app.add_option_function<std::string>(
+         "--speed", [&speed, read](const std::string& text) { speed = *read(text); },
+         "In real time (realtime), up to 1000 times faster (a number), or as fast as the machine "
+         "can (max); default: " +
+             standard)
+      ->check([read](const std::string& text) -> std::string {
+        return read(text) ? ""
+                          : "realtime, max or a number from 1 to 1000 was expected, not " + text;
+      });
 }
 
 }  // namespace fogbench::daemon

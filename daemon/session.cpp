@@ -145,11 +145,11 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
   }
   std::unique_ptr<Session> session(new Session(std::move(setup), seed));
   const Setup& made = session->setup_;
-  if (speed == Speed::kRealtime) {
-    session->clock_ = std::make_unique<drivers::SteadyClock>();
-  } else {
+  if (speed == Speed::kMaximum) {
     // Starts today, so that the record's dates mean something; nothing measured depends on it.
     session->clock_ = std::make_unique<drivers::VirtualClock>(drivers::SteadyClock().wall_now());
+  } else {
+    session->clock_ = std::make_unique<drivers::SteadyClock>(speed.factor);
   }
   // Before the record, so that a bench which cannot be reached or simulated leaves nothing behind.
   auto transports =
@@ -167,7 +167,8 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
   return session;
 }
 
-Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure) {
+Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure,
+                                            const std::string& operator_name) {
   procedures::RunHeader header;
   header.procedure = procedure.plan.procedure;
   header.procedure_json = procedure.procedure_json;
@@ -176,6 +177,7 @@ Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure) {
   header.scenario_json = setup_.scenario_json;
   if (setup_.simulated) header.seed = seed_;
   header.gyro_serial_number = setup_.bench.gyro.serial_number;
+  header.operator_name = operator_name;
   header.software_version = FOGBENCH_VERSION;
   header.started_at = drivers::utc_text(clock_->wall_now());
   header.frame_rate_hz = bench_.gyro->frame_rate_hz();

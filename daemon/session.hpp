@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,10 +56,16 @@ struct PlannedProcedure {
 Result<PlannedProcedure> plan_procedure(const std::string& name, const config::BenchConfig& bench,
                                         const Parameters& parameters);
 
-enum class Speed {
-  kRealtime,
-  kMaximum  ///< on a virtual clock: as fast as the machine can
+/// Bench seconds a second.
+struct Speed {
+  static const Speed kRealtime;
+  static const Speed kMaximum;  ///< on a virtual clock: as fast as the machine can
+
+  double factor = 1.0;
+  friend bool operator==(Speed, Speed) = default;
 };
+inline constexpr Speed Speed::kRealtime{1.0};
+inline constexpr Speed Speed::kMaximum{std::numeric_limits<double>::infinity()};
 
 class Session {
  public:
@@ -73,8 +80,10 @@ class Session {
                                                procedures::Recorder& record, Speed speed,
                                                drivers::Operator& person);
 
-  /// Runs one procedure to its end in the safe state. Errors: as RunEngine::run.
-  Result<procedures::RunSummary> run(const PlannedProcedure& procedure);
+  /// Runs one procedure to its end in the safe state. `operator_name` is for the record, may be
+  /// empty. Errors: as RunEngine::run.
+  Result<procedures::RunSummary> run(const PlannedProcedure& procedure,
+                                     const std::string& operator_name = {});
   procedures::RunEngine& engine() { return *engine_; }
 
  private:

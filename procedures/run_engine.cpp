@@ -31,13 +31,19 @@ class RunEngine::Run {
             [this] { return after_tick(); }, [this](const Point& point) { return record(point); }),
         remaining_(plan),
         started_(engine.clock_.now()),
-        step_started_(started_) {}
+        step_started_(started_) {
+    engine_.run_ = this;
+  }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+  ~Run() { engine_.run_ = nullptr; }
 
   /// The error is the reason why the run ended early. Never throws.
   Status execute();
   /// The safe state and the end of the record. `outcome` is that of execute().
   Result<RunEnd> finish(const Status& outcome);
   std::size_t points() const { return points_; }
+  Status keep_watch() { return session_.tick(engine_.clock_.now() + BenchWatch::kPeriod); }
 
  private:
   Status execute_steps();
@@ -321,6 +327,11 @@ Result<std::vector<InstrumentRecord>> RunEngine::identify_instruments() {
     if (!status) return status.error();
   }
   return records;
+}
+
+Status RunEngine::keep_watch() {
+  if (run_ == nullptr) return Error{ErrorCode::kDevice, "no run is under way"};
+  return run_->keep_watch();
 }
 
 Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {

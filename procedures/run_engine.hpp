@@ -65,6 +65,11 @@ class RunEngine {
   /// failed or aborted run is a RunSummary that says so. An engine may run again after an end.
   Result<RunSummary> run(const Plan& plan, const RunHeader& header);
 
+  /// For an operator whose answer takes time: called from within confirm() again and again until it
+  /// has come. Keeps watch over the bench for up to a second. An error (an abort, an instrument
+  /// that is gone) means that nobody need answer any more: confirm() returns it.
+  Status keep_watch();
+
   // Thread- and signal-safe requests; take effect within BenchWatch::kNap (abort) or before the
   // next step outside an indivisible block (pause). One asked for before run() holds for that run,
   // and for no later one.
@@ -84,6 +89,7 @@ class RunEngine {
   std::function<void(const Progress&)> progress_;
   std::function<void(const Point&)> point_;
   RunState state_ = RunState::kIdle;
+  Run* run_ = nullptr;  ///< the one under way
   std::atomic<bool> abort_requested_{false};
   std::atomic<bool> pause_requested_{false};
 };

@@ -230,6 +230,46 @@ TEST(RunEngine, AnOperatorWhoDeclinesAborts) {
   EXPECT_TRUE(rig.log.points.empty());
 }
 
+/// Answers after twenty seconds.
+class SlowOperator final : public drivers::Operator {
+ public:
+  Result<bool> confirm(const std::string&) override {
+    for (int second = 0; second < 20; ++second) {
+      if (on_second) on_second(second);
+      if (const Status kept = engine->keep_watch(); !kept) return kept.error();
+    }
+    return true;
+  }
+  RunEngine* engine = nullptr;
+  std::function<void(int)> on_second;
+};
+
+TEST(RunEngine, KeepsWatchOverTheBenchWhileAnAnswerIsAwaited) {
+  Rig rig;
+  SlowOperator person;
+  RunEngine engine{rig.config, rig.bench, rig.plant.clock, person, rig.log};
+  person.engine = &engine;
+  const auto summary = engine.run(rig.plan({step(config::Prompt{"turn it"})}), RunHeader{});
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->end.outcome, RunOutcome::kCompleted) << summary->end.reason;
+  EXPECT_GE(rig.log.rows.size(), 20U);
+}
+
+TEST(RunEngine, AbortsWhileAnAnswerIsAwaited) {
+  Rig rig;
+  SlowOperator person;
+  RunEngine engine{rig.config, rig.bench, rig.plant.clock, person, rig.log};
+  person.engine = &engine;
+  person.on_second = [&](int second) {
+    EXPECT_LE(second, 5);
+    if (second == 5) engine.request_abort();
+  };
+  const auto summary = engine.run(rig.plan({step(config::Prompt{"turn it"})}), RunHeader{});
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->end.outcome, RunOutcome::kAborted);
+  EXPECT_THAT(summary->end.reason, HasSubstr("aborted on request"));
+}
+
 TEST(RunEngine, RecordsAPointBeforeAnyObserverSeesIt) {
   Rig rig;
   std::size_t seen = 0;

@@ -1,0 +1,46 @@
+#pragma once
+// A client of fogbenchd's control socket (daemon/protocol.md). Blocks; one thread.
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "config/result.hpp"
+#include "drivers/file_descriptor.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace fogbench::cli {
+
+/// --socket PATH.
+void add_socket_option(CLI::App& command, std::string& socket);
+
+class ControlClient {
+ public:
+  /// `socket`: as given with --socket; empty: where the daemon is by default. kDevice, one line,
+  /// when nobody serves there or this user may not connect.
+  static Result<std::unique_ptr<ControlClient>> connect(const std::string& socket);
+
+  /// The method's result. Errors: kBadInput and kLimit for what the daemon says of a procedure;
+  /// kTimeout when it does not answer, kDevice for every other refusal and when it is gone.
+  Result<nlohmann::json> call(const std::string& method, const nlohmann::ordered_json& params);
+  Result<nlohmann::json> call(const std::string& method);
+
+  /// Waits for the next status after a call of `watch`. kDevice when the daemon is gone.
+  Result<nlohmann::json> next_status();
+
+ private:
+  ControlClient(int socket, std::string path) : socket_(socket), path_(std::move(path)) {}
+  /// Without its newline. `timeout_ms` < 0: waits for ever.
+  Result<std::string> next_line(int timeout_ms);
+  Error gone() const;
+
+  drivers::FileDescriptor socket_;
+  std::string path_;
+  std::string in_;
+  int calls_ = 0;
+};
+
+}  // namespace fogbench::cli

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <variant>
+
+#include "cli/command.hpp"
+#include "cli/common_options.hpp"
+#include "cli/control_client.hpp"
+#include "cli/output.hpp"
+#include "procedures/estimate.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+struct RunOptions {
+  std::string procedure, socket;
+  std::vector<std::string> set;
+  bool json = false;
+};
+
+Result<ExitStatus> run_run(const RunOptions& options) {
+  const auto parameters = parse_parameters(options.set);
+  if (!parameters) return parameters.error();
+  nlohmann::ordered_json set = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : *parameters) {
+    std::visit([&set, &key = name](const auto& v) { set[key] = v; }, value);
+  }
+  // The daemon works in another folder.
+  std::string procedure = options.procedure;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(procedure, error)) {
+    procedure = std::filesystem::absolute(procedure, error).string();
+  }
+  auto client = ControlClient::connect(options.socket);
+  if (!client) return client.error();
+  const auto queued = (*client)->call("run", {{"procedure", procedure}, {"set", set}});
+  if (!queued) return queued.error();
+  if (options.json) {
+    print_json(*queued);
+    return ExitStatus::kDone;
+  }
+  fmt::print("Job {}, {}: {} steps, about {}{}\n", queued->value("job", 0), options.procedure,
+             queued->value("steps", 0),
+             procedures::duration_text(config::Seconds{queued->value("estimate_s", 0.0)}),
+             queued->value("held", false) ? "; the queue is held (fogbench resume)" : "");
+  fmt::print("Next: fogbench watch\n");
+  return ExitStatus::kDone;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  add_command<RunOptions>(
+      app, action, "run", "Queue a procedure on the daemon's bench",
+      "  fogbench run acceptance\n"
+      "  fogbench run ./my-sweep.json --set average_s=60",
+      [](CLI::App& command, RunOptions& options) {
+        command
+            .add_option("PROCEDURE", options.procedure,
+                        "A procedure file that the daemon may read, or a ready one")
+            ->required();
+        command
+            .add_option("--set", options.set,
+                        "name=value or name=value,value...: a parameter of the procedure")
+            ->allow_extra_args(false);
+        add_socket_option(command, options.socket);
+        command.add_flag("--json", options.json, "One JSON document on stdout");
+      },
+      run_run);
+}
+
+}  // namespace fogbench::cli

@@ -1,0 +1,125 @@
+#include "cli/status_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "config/units.hpp"
+#include "procedures/estimate.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+using nlohmann::json;
+
+const json& at(const json& object, const char* key) {
+  static const json kNone;
+  if (!object.is_object()) return kNone;
+  const auto found = object.find(key);
+  return found == object.end() ? kNone : *found;
+}
+
+std::string plain(const json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_null() ? "-" : value.dump();
+}
+
+double real(const json& value) {
+  return value.is_number() ? value.get<double>() : 0.0;
+}
+
+std::string span_text(const json& seconds) {
+  return procedures::duration_text(config::Seconds{real(seconds)});
+}
+
+/// "temperature working 1  21.01 degC", two to a line.
+std::string values_text(const json& values) {
+  std::string lines;
+  std::size_t cells = 0;
+  for (const auto& [key, value] : values.items()) {
+    if (key == "time_s") continue;
+    const std::string_view unit = config::unit_of(key);
+    std::string name = unit.empty() ? key : key.substr(0, key.rfind('_'));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    const std::string shown =
+        value.is_number() ? fmt::format("{:.3f}", value.get<double>()) : plain(value);
+    lines += fmt::format("  {:<22}{:>10} {:<5}", name, shown, unit);
+    if (++cells % 2 == 0) lines += '\n';
+  }
+  if (cells % 2 != 0) lines += '\n';
+  return lines;
+}
+
+}  // namespace
+
+std::string status_text(const json& status) {
+  std::string out;
+  const json& run = at(status, "run");
+  if (run.is_object()) {
+    out += fmt::format("{}: run {}, {}, asked for by {}\n", plain(at(status, "state")),
+                       plain(at(run, "run")), plain(at(run, "procedure")), plain(at(run, "by")));
+    out += fmt::format("step {} of {}: {}\n", plain(at(run, "step")), plain(at(run, "steps")),
+                       plain(at(run, "says")));
+    out += fmt::format("{} so far, about {} left, {} points\n", span_text(at(run, "elapsed_s")),
+                       span_text(at(run, "remaining_s")), plain(at(run, "points")));
+    if (at(run, "abort_requested") == true) {
+      out += "an abort has been asked for\n";
+    } else if (at(run, "pause_requested") == true && at(status, "state") != "paused") {
+      out += "a pause has been asked for: before the next divisible step\n";
+    }
+  } else {
+    out += plain(at(status, "state")) + ": nothing is running\n";
+    const json& last = at(status, "last_run");
+    if (last.is_object()) out += "last: " + ended_text(last) + "\n";
+  }
+  const json& queue = at(status, "queue");
+  if (real(at(queue, "jobs")) > 0) {
+    out += fmt::format("{} in the queue{}\n", plain(at(queue, "jobs")),
+                       at(queue, "held") == true ? ", held (fogbench resume)" : "");
+  }
+  const json& prompt = at(status, "prompt");
+  if (prompt.is_object()) {
+    out += fmt::format("prompt {}: {} (fogbench answer yes|no)\n", plain(at(prompt, "prompt")),
+                       plain(at(prompt, "text")));
+  }
+  if (!run.is_object()) return out;
+  const json& values = at(status, "values");
+  if (values.is_object()) out += values_text(values);
+  const json& point = at(status, "point");
+  if (point.is_object()) {
+    out += fmt::format("last point: {} at {:.1f} s, {:.4f} deg/h\n", plain(at(point, "segment")),
+                       real(at(point, "time_s")), real(at(point, "rate_deg_per_h")));
+  }
+  const json& events = at(status, "events");
+  constexpr std::size_t kShown = 5;
+  const std::size_t first = events.size() > kShown ? events.size() - kShown : 0;
+  for (std::size_t i = first; events.is_array() && i < events.size(); ++i) {
+    out += fmt::format("{:>9.1f} s  {:<7}  {}\n", real(at(events[i], "time_s")),
+                       plain(at(events[i], "severity")), plain(at(events[i], "message")));
+  }
+  return out;
+}
+
+std::string ended_text(const json& ended) {
+  return fmt::format(
+      "run {}, {}: {}, {}, {} points; the bench is {}", plain(at(ended, "run")),
+      plain(at(ended, "procedure")), plain(at(ended, "outcome")), plain(at(ended, "reason")),
+      plain(at(ended, "points")),
+      at(ended, "safe_state_reached") == true ? "in its safe state" : "NOT in its safe state");
+}
+
+bool is_at_rest(const json& status) {
+  const json& queue = at(status, "queue");
+  return !at(status, "run").is_object() &&
+         (real(at(queue, "jobs")) == 0 || at(queue, "held") == true ||
+          at(status, "stopping") == true);
+}
+
+Status outcome_of(const json& ended) {
+  const json& outcome = at(ended, "outcome");
+  if (outcome == "completed") return {};
+  return Error{outcome == "aborted" ? ErrorCode::kAborted : ErrorCode::kDevice, ended_text(ended)};
+}
+
+}  // namespace fogbench::cli

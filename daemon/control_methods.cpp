@@ -1,0 +1,283 @@
+#include "daemon/control_methods.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <variant>
+
+#include "daemon/desk_json.hpp"
+#include "daemon/session.hpp"
+
+namespace fogbench::daemon {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+using Outcome = std::variant<ordered_json, RpcError>;
+
+RpcError invalid(const std::string& says) {
+  return {RpcCode::kInvalidParams, says};
+}
+
+/// A person's action is in the log before anything comes of it.
+Person person_of(const Caller& caller, const std::string& does) {
+  Person person{user_name(caller.uid), caller.uid};
+  spdlog::info("{} (uid {}): {}", person.name, person.uid, does);
+  return person;
+}
+
+Outcome done(const RunDesk::Refused& refused) {
+  if (refused) return *refused;
+  return ordered_json::object();
+}
+
+/// Null when there is no such whole number from 1 on.
+std::optional<std::uint64_t> number_of(const json& params, const char* key) {
+  const auto value = params.find(key);
+  if (value == params.end() || !value->is_number_unsigned()) return std::nullopt;
+  return value->get<std::uint64_t>();
+}
+
+/// {"average_s": 5, "levels_ut": [0, 300]} as --set gives them.
+std::optional<Parameters> parameters_of(const json& set) {
+  Parameters parameters;
+  if (!set.is_object()) return std::nullopt;
+  for (const auto& [name, value] : set.items()) {
+    if (value.is_number()) {
+      parameters[name] = value.get<double>();
+      continue;
+    }
+    if (!value.is_array()) return std::nullopt;
+    std::vector<double> list;
+    for (const json& entry : value) {
+      if (!entry.is_number()) return std::nullopt;
+      list.push_back(entry.get<double>());
+    }
+    parameters[name] = std::move(list);
+  }
+  return parameters;
+}
+
+Outcome status(RunDesk& desk, const json&) {
+  return to_json(desk.view());
+}
+
+Outcome queue(RunDesk& desk, const json&) {
+  const DeskView view = desk.view();
+  return ordered_json{{"held", view.held}, {"jobs", to_json(desk.queue())}};
+}
+
+Outcome runs(RunDesk& desk, const json&) {
+  return ordered_json{{"runs", to_json(desk.ended_runs())}};
+}
+
+Outcome watch(const json& params, Caller& caller) {
+  constexpr double kShortest = 0.1, kLongest = 3600.0;
+  constexpr std::size_t kLongestTemplate = 2048;
+  Subscription subscription;
+  double every_s = 1.0;
+  if (const auto every = params.find("every_s"); every != params.end()) {
+    every_s = every->is_number() ? every->get<double>() : 0.0;
+  }
+  if (!(every_s >= kShortest && every_s <= kLongest)) {
+    return invalid("/params/every_s: expected a number from 0.1 to 3600");
+  }
+  subscription.every = drivers::from_seconds(every_s);
+  if (const auto pattern = params.find("template"); pattern != params.end()) {
+    subscription.pattern_json = pattern->dump();
+    if (subscription.pattern_json.size() > kLongestTemplate) {
+      return invalid(fmt::format("/params/template: expected at most {} bytes", kLongestTemplate));
+    }
+  }
+  caller.subscription = std::move(subscription);
+  return ordered_json::object();
+}
+
+Outcome enqueue(RunDesk& desk, const config::BenchConfig& bench, const json& params,
+                const Caller& caller) {
+  const auto name = params.find("procedure");
+  if (name == params.end() || !name->is_string()) {
+    return invalid("/params/procedure: expected a procedure's name, or its file's full path");
+  }
+  const auto set = params.find("set");
+  const auto parameters = set == params.end() ? Parameters{} : parameters_of(*set);
+  if (!parameters) {
+    return invalid("/params/set: expected {\"name\": number or [number, number...]}");
+  }
+  auto planned = plan_procedure(name->get<std::string>(), bench, *parameters);
+  if (!planned) {
+    const bool limit = planned.error().code == ErrorCode::kLimit;
+    return RpcError{limit ? RpcCode::kLimit : RpcCode::kBadInput, planned.error().message};
+  }
+  ordered_json answer{{"steps", planned->plan.steps.size()},
+                      {"estimate_s", planned->plan.estimate.count()}};
+  const Person by = person_of(caller, "run " + planned->plan.procedure);
+  const auto queued = desk.enqueue(std::move(*planned), by);
+  if (const auto* refused = std::get_if<RpcError>(&queued)) return *refused;
+  answer["job"] = std::get<std::uint64_t>(queued);
+  answer["held"] = desk.view().held;
+  return answer;
+}
+
+}  // namespace
+
+struct ControlMethods::Method {
+  std::string_view name;
+  Role role;
+  /// Every other parameter is refused: a typing error must not pass for consent.
+  std::vector<std::string_view> params;
+  std::function<Outcome(ControlMethods& self, const json& params, Caller& caller)> call;
+};
+
+const ControlMethods::Method* ControlMethods::find(const std::string& name) {
+  using Self = ControlMethods;
+  static const std::vector<Method> kMethods{
+      {"hello",
+       Role::kObserver,
+       {},
+       [](Self& self, const json&, Caller& caller) -> Outcome {
+         return ordered_json{{"protocol", kProtocolVersion},
+                             {"version", FOGBENCH_VERSION},
+                             {"bench", self.bench_.name},
+                             {"user", user_name(caller.uid)},
+                             {"role", name_of(caller.role)}};
+       }},
+      {"status",
+       Role::kObserver,
+       {},
+       [](Self& self, const json& params, Caller&) { return status(self.desk_, params); }},
+      {"queue",
+       Role::kObserver,
+       {},
+       [](Self& self, const json& params, Caller&) { return queue(self.desk_, params); }},
+      {"runs",
+       Role::kObserver,
+       {},
+       [](Self& self, const json& params, Caller&) { return runs(self.desk_, params); }},
+      {"watch",
+       Role::kObserver,
+       {"every_s", "template"},
+       [](Self&, const json& params, Caller& caller) { return watch(params, caller); }},
+      {"unwatch",
+       Role::kObserver,
+       {},
+       [](Self&, const json&, Caller& caller) -> Outcome {
+         caller.subscription.reset();
+         return ordered_json::object();
+       }},
+      {"run",
+       Role::kOperator,
+       {"procedure", "set"},
+       [](Self& self, const json& params, Caller& caller) {
+         return enqueue(self.desk_, self.bench_, params, caller);
+       }},
+      {"remove",
+       Role::kOperator,
+       {"job"},
+       [](Self& self, const json& params, Caller& caller) -> Outcome {
+         const auto job = number_of(params, "job");
+         if (!job) return invalid("/params/job: expected a job's number");
+         const Person by = person_of(caller, fmt::format("remove job {}", *job));
+         return done(self.desk_.remove(*job, by));
+       }},
+      {"pause",
+       Role::kOperator,
+       {},
+       [](Self& self, const json&, Caller& caller) {
+         return done(self.desk_.pause(person_of(caller, "pause")));
+       }},
+      {"resume",
+       Role::kOperator,
+       {},
+       [](Self& self, const json&, Caller& caller) {
+         return done(self.desk_.resume(person_of(caller, "resume")));
+       }},
+      {"abort",
+       Role::kOperator,
+       {"force"},
+       [](Self& self, const json& params, Caller& caller) -> Outcome {
+         const json force = params.value("force", json(false));
+         if (!force.is_boolean()) return invalid("/params/force: expected true or false");
+         self.forced_ = self.forced_ || force.get<bool>();
+         const auto refused =
+             self.desk_.abort(person_of(caller, force.get<bool>() ? "forced abort" : "abort"));
+         // A forced end is for a bench that does not answer: no state of the run refuses it.
+         return done(self.forced_ ? RunDesk::Refused{} : refused);
+       }},
+      {"answer",
+       Role::kOperator,
+       {"prompt", "confirm"},
+       [](Self& self, const json& params, Caller& caller) -> Outcome {
+         const auto prompt = number_of(params, "prompt");
+         const auto confirm = params.find("confirm");
+         if (!prompt) return invalid("/params/prompt: expected the number of the prompt");
+         if (confirm == params.end() || !confirm->is_boolean()) {
+           return invalid("/params/confirm: expected true or false");
+         }
+         const bool yes = confirm->get<bool>();
+         const Person by =
+             person_of(caller, fmt::format("answer {} to prompt {}", yes ? "yes" : "no", *prompt));
+         return done(self.desk_.answer(*prompt, yes, by));
+       }},
+  };
+  for (const Method& method : kMethods) {
+    if (method.name == name) return &method;
+  }
+  return nullptr;
+}
+
+std::string ControlMethods::answer(std::string_view line, Caller& caller) {
+  const auto parsed = parse_request(line);
+  if (const auto* refused = std::get_if<RpcRefusal>(&parsed)) {
+    return format_error(refused->id, refused->error);
+  }
+  const auto& request = std::get<RpcRequest>(parsed);
+  const auto outcome = [&]() -> Outcome {
+    const Method* method = find(request.method);
+    if (method == nullptr) {
+      return RpcError{RpcCode::kMethodNotFound, "there is no method of that name"};
+    }
+    if (caller.role < method->role) {
+      return RpcError{RpcCode::kPermission,
+                      fmt::format("permission denied: {} may not {}: {}'s role is {}, {} is "
+                                  "expected",
+                                  user_name(caller.uid), method->name, user_name(caller.uid),
+                                  name_of(caller.role), name_of(method->role))};
+    }
+    for (const auto& [key, value] : request.params.items()) {
+      if (std::find(method->params.begin(), method->params.end(), key) == method->params.end()) {
+        return invalid(fmt::format("/params: {} takes no such parameter", method->name));
+      }
+    }
+    // Nothing of ours throws; memory may run out.
+    try {
+      return method->call(*this, request.params, caller);
+    } catch (const std::exception& error) {
+      return RpcError{RpcCode::kInternal, error.what()};
+    }
+  }();
+  if (request.id.empty()) return {};
+  if (const auto* error = std::get_if<RpcError>(&outcome)) return format_error(request.id, *error);
+  return format_result(request.id, std::get<ordered_json>(outcome));
+}
+
+std::string ControlMethods::news(Caller& caller) {
+  const DeskView view = desk_.view();
+  Subscription& subscription = *caller.subscription;
+  if (view.version == subscription.seen) return {};
+  subscription.seen = view.version;
+  ordered_json status = to_json(view);
+  if (!subscription.pattern_json.empty()) {
+    status = filled(ordered_json::parse(subscription.pattern_json), status);
+  }
+  std::string line = format_notification("status", status);
+  if (line.size() <= ControlServer::kMostUnread) return line;
+  caller.subscription.reset();
+  return format_error("null", {RpcCode::kTooLong, "watch: the template repeats too much"});
+}
+
+}  // namespace fogbench::daemon

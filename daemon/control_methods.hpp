@@ -1,0 +1,36 @@
+#pragma once
+// The methods of protocol.md: who may call each, what its parameters must be, what it does at the
+// desk. On the control socket's thread.
+
+#include <string>
+#include <string_view>
+
+#include "config/bench.hpp"
+#include "daemon/control_server.hpp"
+#include "daemon/json_rpc.hpp"
+#include "daemon/run_desk.hpp"
+
+namespace fogbench::daemon {
+
+class ControlMethods final : public ControlService {
+ public:
+  /// The desk must outlive it. `bench` is what procedures are planned for.
+  ControlMethods(RunDesk& desk, config::BenchConfig bench)
+      : desk_(desk), bench_(std::move(bench)) {}
+
+  std::string answer(std::string_view line, Caller& caller) override;
+  std::string news(Caller& caller) override;
+
+  /// An operator has asked for the end of the process, whatever the bench does.
+  bool forced() const { return forced_; }
+
+ private:
+  struct Method;
+  static const Method* find(const std::string& name);
+
+  RunDesk& desk_;
+  config::BenchConfig bench_;
+  bool forced_ = false;
+};
+
+}  // namespace fogbench::daemon

@@ -1,0 +1,41 @@
+#pragma once
+// A recorder that hands everything on to another and shows the desk what has been recorded: nobody
+// sees what is not on record. What people did comes back from the desk and is recorded as events
+// of the run, with who did it, at the next reading of the instruments or before the run's end.
+// On the bench's thread.
+
+#include <string>
+#include <vector>
+
+#include "daemon/run_desk.hpp"
+#include "procedures/recorder.hpp"
+
+namespace fogbench::daemon {
+
+class DeskRecorder final : public procedures::Recorder {
+ public:
+  /// Both must outlive it.
+  DeskRecorder(procedures::Recorder& record, RunDesk& desk) : record_(record), desk_(desk) {}
+
+  Result<std::int64_t> begin_run(
+      const procedures::RunHeader& header,
+      const std::vector<procedures::InstrumentRecord>& instruments) override;
+  Status step_started(const std::string& path, const std::string& what, double time_s) override;
+  Status step_ended(const std::string& path, double time_s, const std::string& evidence) override;
+  Status event(double time_s, const std::string& severity, const std::string& message,
+               const std::string& data_json) override;
+  Status point(const procedures::Point& point) override;
+  Status void_block(int block, double time_s, const std::string& reason) override;
+  Status monitor(const procedures::MonitorRow& row) override;
+  Status gyro_samples(const drivers::GyroBlock& block) override;
+  Status end_run(const procedures::RunEnd& end) override;
+
+ private:
+  Status record_notes();
+
+  procedures::Recorder& record_;
+  RunDesk& desk_;
+  double time_s_ = 0.0;  ///< of the run's last record
+};
+
+}  // namespace fogbench::daemon

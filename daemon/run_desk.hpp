@@ -1,0 +1,167 @@
+#pragma once
+// The desk between the two threads of a serving daemon: orders come in from the control socket's
+// thread, the bench's thread takes them and leaves what it sees. Everything on it is under one
+// mutex, held for a copy at most; nothing else is shared.
+//
+// A run's life here:   queued ── next_job ──► starting ── run_begun ──► running, paused, stopping
+//                                                ── run_ended ──► among the last runs
+//
+// What a run asks of the engine (pause, resume, abort) reaches it between run_begun and run_ending
+// only, so that an order for one run never falls on the next. After a run that was aborted or
+// failed the queue is held: a bench that has just failed heats up again when a person says so.
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "daemon/json_rpc.hpp"
+#include "daemon/session.hpp"
+#include "procedures/recorder.hpp"
+#include "procedures/run_engine.hpp"
+
+namespace fogbench::daemon {
+
+/// Who asks for something.
+struct Person {
+  std::string name;
+  std::uint32_t uid = 0;
+};
+
+struct Job {
+  std::uint64_t job = 0;
+  PlannedProcedure procedure;
+  Person by;
+};
+
+struct QueuedJob {
+  std::uint64_t job = 0;
+  std::string procedure;
+  std::string by;
+  config::Seconds estimate{0.0};
+};
+
+struct PresentRun {
+  std::uint64_t job = 0;
+  std::int64_t run = 0;  ///< its number in the run log; 0 while it starts
+  std::string procedure;
+  std::string by;
+  procedures::Progress progress;
+  std::size_t points = 0;
+  bool pause_requested = false;
+  bool abort_requested = false;
+};
+
+struct EndedRun {
+  std::uint64_t job = 0;
+  std::int64_t run = 0;  ///< 0: it could not be begun
+  std::string procedure;
+  std::string by;
+  std::string outcome;  ///< completed, aborted, failed
+  std::string reason;
+  bool safe_state_reached = true;
+  std::size_t points = 0;
+};
+
+struct SeenEvent {
+  double time_s = 0.0;
+  std::string severity, message;
+};
+
+struct Question {
+  std::uint64_t prompt = 0;
+  std::string text;
+};
+
+/// What can be seen from outside, at one moment.
+struct DeskView {
+  std::uint64_t version = 0;  ///< rises with every change
+  std::optional<PresentRun> run;
+  std::optional<Question> question;
+  std::optional<procedures::MonitorRow> values;  ///< the present run's last
+  std::optional<procedures::Point> point;        ///< the present run's last
+  std::deque<SeenEvent> events;                  ///< the last ones, oldest first
+  std::optional<EndedRun> last_run;
+  std::size_t jobs = 0;
+  bool held = false;
+  bool closing = false;
+};
+
+/// An action for the run's record, with who did it.
+struct Note {
+  std::string message;
+  std::string data_json;
+};
+
+class RunDesk {
+ public:
+  static constexpr std::size_t kMostJobs = 100;
+  static constexpr std::size_t kMostEvents = 20;
+  static constexpr std::size_t kMostEndedRuns = 100;
+
+  // --- The control socket's thread. A refusal is an RpcError.
+  using Refused = std::optional<RpcError>;
+  std::variant<std::uint64_t, RpcError> enqueue(PlannedProcedure procedure, const Person& by);
+  Refused remove(std::uint64_t job, const Person& by);
+  Refused pause(const Person& by);
+  /// Resumes a run, or a queue that is held.
+  Refused resume(const Person& by);
+  Refused abort(const Person& by);
+  Refused answer(std::uint64_t prompt, bool yes, const Person& by);
+  /// No run begins any more; the one under way is aborted. next_job returns.
+  void close(const Person& by);
+  DeskView view() const;
+  std::vector<QueuedJob> queue() const;
+  std::vector<EndedRun> ended_runs() const;
+  /// An abort has been asked for and the bench is not safe yet.
+  bool aborting() const;
+  /// The desk is closed and the bench's thread has seen it.
+  bool deserted() const;
+
+  // --- The bench's thread.
+  /// Before the first job; the engine must outlive the last.
+  void attach(procedures::RunEngine& engine);
+  /// Waits for one; nothing when the desk is closed.
+  std::optional<Job> next_job();
+  void run_begun(std::int64_t run);
+  void progressed(const procedures::Progress& progress);
+  void saw(const procedures::MonitorRow& row);
+  void saw(const procedures::Point& point);
+  void saw(SeenEvent event);
+  void voided(int block);
+  /// From here on no order reaches the engine.
+  void run_ending(const procedures::RunEnd& end);
+  void run_ended(const Result<procedures::RunSummary>& summary);
+  /// What was done since it was last asked.
+  std::vector<Note> take_notes();
+
+  std::uint64_t ask(const std::string& text);
+  std::optional<bool> answer_to(std::uint64_t prompt) const;
+  void withdraw();
+
+ private:
+  /// Both with the mutex held.
+  void note(const std::string& action, const Person& by);
+  void changed() { ++view_.version; }
+
+  mutable std::mutex mutex_;
+  std::condition_variable job_or_close_;
+  procedures::RunEngine* engine_ = nullptr;
+  bool deserted_ = false;
+  bool engine_runs_ = false;  ///< between run_begun and run_ending
+  std::deque<Job> queue_;
+  std::uint64_t jobs_ever_ = 0, prompts_ever_ = 0;
+  DeskView view_;
+  std::optional<bool> answer_;
+  int block_ = 0;  ///< of the last point, and how many points it has
+  std::size_t block_points_ = 0;
+  std::optional<procedures::RunEnd> end_;
+  std::deque<EndedRun> ended_;
+  std::vector<Note> notes_;
+};
+
+}  // namespace fogbench::daemon

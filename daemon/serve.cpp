@@ -1,0 +1,185 @@
+#include "daemon/serve.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "config/exit_status.hpp"
+#include "daemon/access.hpp"
+#include "daemon/control_methods.hpp"
+#include "daemon/control_server.hpp"
+#include "daemon/control_socket.hpp"
+#include "daemon/desk_operator.hpp"
+#include "daemon/desk_recorder.hpp"
+#include "daemon/run_desk.hpp"
+#include "daemon/run_log.hpp"
+#include "drivers/file_descriptor.hpp"
+
+namespace fogbench::daemon {
+namespace {
+
+[[noreturn]] void end_at_once(const std::string& why) {
+  spdlog::critical(
+      "{}: ending at once, the bench is NOT in its safe state; a new start begins "
+      "with it",
+      why);
+  spdlog::default_logger()->flush();
+  _exit(static_cast<int>(ExitStatus::kFailed));
+}
+
+/// From here on the signals that end the process are read from the descriptor, in all threads that
+/// are started later, too.
+int take_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int number : {SIGTERM, SIGINT}) sigaddset(&signals, number);
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);  // nohup asked to survive it
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+/// Empty when none has come.
+std::string next_signal(int descriptor) {
+  signalfd_siginfo info{};
+  if (read(descriptor, &info, sizeof info) != sizeof info) return {};
+  return fmt::format("SIG{}", sigabbrev_np(static_cast<int>(info.ssi_signo)));
+}
+
+/// For as many connections as the server allows.
+void raise_descriptor_limit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  constexpr rlim_t kEnough = 2 * ControlServer::kMostConnections;
+  limit.rlim_cur = std::min(std::max(limit.rlim_cur, kEnough), limit.rlim_max);
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+Result<AccessRules> rules_of(const ServeOptions& options) {
+  AccessRules rules{geteuid(), {}, {}};
+  for (const auto& [name, group] : {std::pair{&options.operators, &rules.operators},
+                                    std::pair{&options.observers, &rules.observers}}) {
+    if (name->empty()) continue;
+    const auto found = group_by_name(*name);
+    if (!found) return found.error();
+    *group = *found;
+  }
+  return rules;
+}
+
+Result<std::unique_ptr<ControlSocket>> open_socket(const std::string& named, mode_t mode) {
+  auto inherited = ControlSocket::inherited();
+  if (!inherited || *inherited) return inherited;
+  if (!named.empty()) return ControlSocket::open(named, mode);
+  const auto standard = socket_to_serve();
+  if (!standard) return standard.error();
+  return ControlSocket::open(*standard, mode);
+}
+
+/// The bench's thread.
+void run_jobs(Session& session, RunDesk& desk) {
+  try {
+    while (const auto job = desk.next_job()) {
+      const std::string& name = job->procedure.plan.procedure;
+      spdlog::info("job {}, {}: begins, asked for by {}", job->job, name, job->by.name);
+      const auto summary = session.run(job->procedure, job->by.name);
+      if (summary) {
+        const procedures::RunEnd& end = summary->end;
+        spdlog::info("run {}, {}: {} points, {}; the bench is {}", summary->run, name,
+                     summary->points, end.reason,
+                     end.safe_state_reached ? "in its safe state" : "NOT in its safe state");
+      } else {
+        spdlog::error("job {}, {}: {}", job->job, name, summary.error().message);
+      }
+      desk.run_ended(summary);
+    }
+  } catch (const std::exception& error) {
+    end_at_once(fmt::format("an unexpected error: {}", error.what()));
+  }
+}
+
+/// Serves until the bench's thread has left the desk.
+void serve_clients(ControlServer& server, const ControlMethods& methods, RunDesk& desk, int signals,
+                   drivers::Clock& clock) {
+  bool asked_to_end = false;
+  constexpr auto kNever = drivers::Clock::Instant::max();
+  auto forced_at = kNever;  // when the abort under way will have lasted too long
+  while (!desk.deserted()) {
+    server.serve_once();
+    for (auto signal = next_signal(signals); !signal.empty(); signal = next_signal(signals)) {
+      if (asked_to_end) end_at_once("a second signal, " + signal);
+      asked_to_end = true;
+      spdlog::info("{}: stopping", signal);
+      desk.close({signal, static_cast<std::uint32_t>(geteuid())});
+    }
+    if (methods.forced()) end_at_once("a forced abort");
+    if (!desk.aborting()) {
+      forced_at = kNever;
+    } else if (forced_at == kNever) {
+      forced_at = clock.now() + kAbortTime;
+    } else if (clock.now() > forced_at) {
+      end_at_once(fmt::format("no safe state within {} s of the abort", kAbortTime.count()));
+    }
+  }
+}
+
+}  // namespace
+
+Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store, Speed speed,
+             const ServeOptions& options) {
+  if (speed == Speed::kMaximum) {
+    return Error{ErrorCode::kUsage,
+                 "--speed max waits for nobody; serving needs realtime, or a number that is as "
+                 "many times faster)"};
+  }
+  const auto rules = rules_of(options);
+  if (!rules) return rules.error();
+  raise_descriptor_limit();
+  // Before the bench: two daemons must not touch one.
+  const auto socket = open_socket(options.socket, rules->socket_mode());
+  if (!socket) return socket.error();
+  const drivers::FileDescriptor signals(take_signals());
+
+  const config::BenchConfig bench = setup.bench;
+  const std::string seeded = setup.simulated ? fmt::format(", seed {}", seed) : "";
+  auto log = RunLog::open(store);
+  if (!log) return log.error();
+  RunDesk desk;
+  DeskRecorder record(**log, desk);
+  DeskOperator person(desk);
+  auto session = Session::open(std::move(setup), seed, record, speed, person);
+  if (!session) return session.error();
+  procedures::RunEngine& engine = (*session)->engine();
+  engine.on_progress([&desk](const procedures::Progress& now) { desk.progressed(now); });
+  desk.attach(engine);
+  person.attach(engine);
+  spdlog::info("bench {} is in its safe state; run log {}{}; serving {}", bench.name,
+               store.string(), seeded, (*socket)->name());
+
+  drivers::SteadyClock clock;
+  ControlMethods methods(desk, bench);
+  ControlServer server((*socket)->descriptor(), signals.get(), *rules, methods, clock);
+  std::thread bench_thread(run_jobs, std::ref(**session), std::ref(desk));
+  pthread_setname_np(bench_thread.native_handle(), "bench");
+  serve_clients(server, methods, desk, signals.get(), clock);
+  bench_thread.join();
+
+  const auto last = desk.view().last_run;
+  if (last && !last->safe_state_reached) return Error{ErrorCode::kDevice, last->reason};
+  spdlog::info("stopped; the bench is in its safe state");
+  return {};
+}
+
+}  // namespace fogbench::daemon

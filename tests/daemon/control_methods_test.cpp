@@ -1,0 +1,172 @@
+#include "daemon/control_methods.hpp"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/desk_json.hpp"
+#include "tests/support/source_tree.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fogbench::daemon {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+using testing::HasSubstr;
+
+/// Nobody is at the bench: what is queued stays.
+class ControlMethodsTest : public testing::Test {
+ protected:
+  ControlMethodsTest() {
+    const auto bench =
+        config::load_bench(tests::source_tree() / "config" / "benches/simulated.json");
+    EXPECT_TRUE(bench) << bench.error().message;
+    methods_ = std::make_unique<ControlMethods>(desk_, *bench);
+  }
+
+  json ask(const std::string& method, const json& params, Caller& caller) {
+    const std::string line = methods_->answer(
+        json{{"jsonrpc", "2.0"}, {"id", 1}, {"method", method}, {"params", params}}.dump(), caller);
+    EXPECT_EQ(line.back(), '\n');
+    return json::parse(line);
+  }
+  json result(const std::string& method, const json& params = json::object()) {
+    const json answer = ask(method, params, operator_);
+    EXPECT_TRUE(answer.contains("result")) << answer;
+    return answer.value("result", json());
+  }
+  RpcCode refusal(const std::string& method, const json& params, Caller& caller) {
+    const json answer = ask(method, params, caller);
+    EXPECT_TRUE(answer.contains("error")) << answer;
+    return static_cast<RpcCode>(answer.at("error").at("code").get<int>());
+  }
+  std::string procedure(const std::string& steps) {
+    return folder_.file("p.json", R"({"name": "p", "steps": [)" + steps + "]}").string();
+  }
+
+  support::TemporaryFolder folder_;
+  RunDesk desk_;
+  std::unique_ptr<ControlMethods> methods_;
+  Caller operator_{geteuid(), Role::kOperator, {}};
+  Caller observer_{4294967000U, Role::kObserver, {}};
+  Caller nobody_{4294967001U, Role::kNobody, {}};
+};
+
+TEST_F(ControlMethodsTest, ObserversReadOperatorsActOthersDoNeither) {
+  for (const char* method : {"hello", "status", "queue", "runs", "watch", "unwatch"}) {
+    EXPECT_TRUE(ask(method, json::object(), observer_).contains("result")) << method;
+    EXPECT_EQ(refusal(method, json::object(), nobody_), RpcCode::kPermission) << method;
+  }
+  for (const char* method : {"run", "remove", "pause", "resume", "abort", "answer"}) {
+    EXPECT_EQ(refusal(method, json::object(), observer_), RpcCode::kPermission) << method;
+    EXPECT_NE(refusal(method, json::object(), operator_), RpcCode::kPermission) << method;
+  }
+  EXPECT_FALSE(methods_->forced());
+  const json answer = ask("abort", {{"force", true}}, observer_);
+  EXPECT_THAT(answer.at("error").at("message").get<std::string>(),
+              HasSubstr("uid 4294967000 may not abort"));
+  EXPECT_FALSE(methods_->forced());
+}
+
+TEST_F(ControlMethodsTest, SaysWhoAsksAndWhatItIs) {
+  const json hello = result("hello");
+  EXPECT_EQ(hello.at("protocol"), kProtocolVersion);
+  EXPECT_EQ(hello.at("bench"), "simulated");
+  EXPECT_EQ(hello.at("role"), "operator");
+  const json idle = result("status");
+  EXPECT_EQ(idle.at("state"), "idle");
+  for (const char* none : {"run", "prompt", "values", "point", "last_run"}) {
+    EXPECT_TRUE(idle.at(none).is_null()) << none;
+  }
+}
+
+TEST_F(ControlMethodsTest, QueuesWhatTheBenchCanDoAndNothingElse) {
+  const std::string file =
+      folder_.file("q.json", R"({"name": "q", "parameters": {"long_s": 5}, "steps": [
+        {"step": "average", "duration_s": "$long_s", "segment": "a"}]})");
+  const json queued = result("run", {{"procedure", file}, {"set", {{"long_s", 600}}}});
+  EXPECT_EQ(queued.at("job"), 1);
+  EXPECT_EQ(queued.at("steps"), 1);
+  EXPECT_GT(queued.at("estimate_s"), 599.0);
+  const json queue = result("queue");
+  EXPECT_EQ(queue.at("jobs").size(), 1U);
+  EXPECT_EQ(queue.at("jobs").at(0).at("procedure"), "q");
+
+  EXPECT_EQ(refusal("run", {{"procedure", "/no/such.json"}}, operator_), RpcCode::kBadInput);
+  EXPECT_EQ(refusal("run", {{"procedure", file}, {"set", {{"wings", 2}}}}, operator_),
+            RpcCode::kBadInput);
+  const std::string hot =
+      procedure(R"({"step": "set_temperature", "target_c": 900, "mode": "boost"})");
+  EXPECT_EQ(refusal("run", {{"procedure", hot}}, operator_), RpcCode::kLimit);
+  EXPECT_EQ(result("queue").at("jobs").size(), 1U);
+  result("remove", {{"job", 1}});
+  EXPECT_EQ(refusal("remove", {{"job", 1}}, operator_), RpcCode::kNotFound);
+}
+
+TEST_F(ControlMethodsTest, ParametersThatAreWrongOrUnknownAreRefused) {
+  const std::pair<const char*, json> wrong[] = {
+      {"status", {{"verbose", true}}},
+      {"run", json::object()},
+      {"run", {{"procedure", 7}}},
+      {"run", {{"procedure", "x"}, {"set", 7}}},
+      {"run", {{"procedure", "x"}, {"set", {{"a", "b"}}}}},
+      {"run", {{"procedure", "x"}, {"set", {{"a", {1, "b"}}}}}},
+      {"remove", {{"job", -1}}},
+      {"abort", {{"force", "yes"}}},
+      {"answer", {{"confirm", true}}},
+      {"answer", {{"prompt", 1}}},
+      {"answer", {{"prompt", 1}, {"confirm", 1}}},
+      {"watch", {{"every_s", 0}}},
+      {"watch", {{"every_s", "often"}}},
+      {"watch", {{"template", std::string(3000, 'x')}}}};
+  for (const auto& [method, params] : wrong) {
+    EXPECT_EQ(refusal(method, params, operator_), RpcCode::kInvalidParams) << method << params;
+  }
+  EXPECT_EQ(refusal("fly", json::object(), operator_), RpcCode::kMethodNotFound);
+}
+
+TEST_F(ControlMethodsTest, ANotificationIsDoneAndNotAnswered) {
+  EXPECT_EQ(methods_->answer(R"({"jsonrpc":"2.0","method":"watch"})", observer_), "");
+  EXPECT_TRUE(observer_.subscription);
+  EXPECT_EQ(methods_->answer(R"({"jsonrpc":"2.0","method":"unwatch"})", observer_), "");
+  EXPECT_FALSE(observer_.subscription);
+}
+
+TEST_F(ControlMethodsTest, NewsHaveTheTemplatesShapeAndComeOncePerChange) {
+  result("watch", {{"every_s", 2},
+                   {"template",
+                    {{"now", "/state"},
+                     {"n", "/queue/jobs"},
+                     {"x", "/no/such"},
+                     {"list", {"/queue", 7, "plain"}}}}});
+  ASSERT_TRUE(operator_.subscription);
+  EXPECT_EQ(operator_.subscription->every, std::chrono::seconds{2});
+  const json news = json::parse(methods_->news(operator_));
+  EXPECT_EQ(news.at("method"), "status");
+  EXPECT_EQ(news.at("params"), json::parse(R"({"now": "idle", "n": 0, "x": null,
+            "list": [{"jobs": 0, "held": false}, 7, "plain"]})"));
+  EXPECT_EQ(methods_->news(operator_), "") << "nothing has changed";
+  desk_.close({"test", 0});
+  EXPECT_NE(methods_->news(operator_), "");
+}
+
+TEST_F(ControlMethodsTest, ATemplateThatRepeatsTooMuchEndsTheSubscription) {
+  for (int i = 0; i < 20; ++i) desk_.saw(SeenEvent{1.0, "info", std::string(480, 'e')});
+  json events = json::array();
+  for (int i = 0; i < 100; ++i) events.push_back("/events");
+  result("watch", {{"template", events}});
+  EXPECT_THAT(methods_->news(operator_), HasSubstr("-32007"));
+  EXPECT_FALSE(operator_.subscription);
+}
+
+TEST_F(ControlMethodsTest, AForcedAbortIsSeenEvenWhenNothingRuns) {
+  EXPECT_EQ(refusal("abort", json::object(), operator_), RpcCode::kWrongState);
+  EXPECT_FALSE(methods_->forced());
+  result("abort", {{"force", true}});
+  EXPECT_TRUE(methods_->forced());
+}
+
+}  // namespace
+}  // namespace fogbench::daemon

@@ -1,0 +1,304 @@
+// The daemon as a service and its clients as operators type them. Only real processes have users,
+// signals, sockets that systemd hands over, and two threads of their own.
+
+#include <grp.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <thread>
+
+#include "tests/system/fogbench.hpp"
+
+namespace fogbench::system_tests {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr gid_t kOperators = 1;     // group "daemon" of every Debian
+constexpr uid_t kStranger = 65534;  // nobody
+
+class ControlTest : public FogbenchTest {
+ protected:
+  ControlTest() {
+    // Other users must reach the socket, and the program: a developer's home may be closed to them.
+    chmod(folder_.path().c_str(), 0755);
+    setenv("FOGBENCH_SOCKET", socket().c_str(), 1);
+  }
+  ~ControlTest() override { unsetenv("FOGBENCH_SOCKET"); }
+
+  std::string socket() const { return (folder_ / "control.sock").string(); }
+
+  std::vector<std::string> daemon_command(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"--bench", "simulated", "--store", store(), "--speed", "20"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return command(arguments, "fogbenchd");
+  }
+  /// Serving when it returns.
+  std::unique_ptr<Process> serve(const std::vector<std::string>& more = {},
+                                 const Process::Setup& setup = {}) const {
+    auto daemon = std::make_unique<Process>(daemon_command(more), setup);
+    for (int i = 0; i < 300; ++i) {
+      if (fogbench({"status"}).status == 0) return daemon;
+      std::this_thread::sleep_for(100ms);
+    }
+    ADD_FAILURE() << "the daemon does not serve: " << daemon->wait(1s).err;
+    return daemon;
+  }
+  static nlohmann::json status() { return json({"status", "--json"}); }
+  /// The first status of which `holds` is true.
+  static nlohmann::json wait_until(const std::function<bool(const nlohmann::json&)>& holds) {
+    nlohmann::json now;
+    for (int i = 0; i < 600; ++i) {
+      now = status();
+      if (holds(now)) return now;
+      std::this_thread::sleep_for(50ms);
+    }
+    ADD_FAILURE() << "it never came to that: " << now;
+    return now;
+  }
+  static nlohmann::json wait_for_prompt() {
+    return wait_until([](const nlohmann::json& now) { return now["prompt"].is_object(); });
+  }
+
+  /// A procedure of `averages` points, 2 s of the bench each, after a prompt where one is given.
+  std::string procedure(const std::string& name, int averages,
+                        const std::string& prompt = "") const {
+    std::string steps = R"({"step": "set_temperature", "mode": "off"})";
+    if (!prompt.empty()) steps += R"(, {"step": "prompt", "text": ")" + prompt + "\"}";
+    for (int i = 0; i < averages; ++i) {
+      steps += R"(, {"step": "average", "duration_s": 2, "segment": "a"})";
+    }
+    return folder_.file(name + ".json", R"({"name": ")" + name + R"(", "steps": [)" + steps + "]}")
+        .string();
+  }
+  nlohmann::json stored(const std::string& run) const {
+    return json({"show", run, "--store", store(), "--json"});
+  }
+  static bool has_event(const nlohmann::json& run, const std::string& text) {
+    for (const auto& event : run["events"]) {
+      if (event["message"].get<std::string>().find(text) != std::string::npos) return true;
+    }
+    return false;
+  }
+};
+
+TEST_F(ControlTest, RunsWhatIsQueuedAndSaysHowItEnded) {
+  const auto daemon = serve();
+  EXPECT_EQ(status()["state"], "idle");
+  const auto queued = json({"run", procedure("first", 6, "Ready?"), "--json"});
+  EXPECT_EQ(queued["job"], 1);
+  EXPECT_EQ(queued["steps"], 8);
+  wait_for_prompt();
+  const Finished second = fogbench({"run", procedure("second", 1)});
+  EXPECT_EQ(second.status, 0) << second.err;
+  EXPECT_NE(second.out.find("Job 2"), std::string::npos) << second.out;
+
+  Process quiet(command({"watch", "--every", "0.1"}));
+  Process follows(command({"watch", "--json"}));
+  ASSERT_TRUE(follows.wait_for_output("Ready?", 30s));
+  EXPECT_EQ(fogbench({"answer", "yes"}).status, 0);
+  EXPECT_EQ(follows.wait().status, 0);
+  const Finished watched = quiet.wait();
+  EXPECT_EQ(watched.status, 0) << watched.err;
+  EXPECT_EQ(std::count(watched.out.begin(), watched.out.end(), '\n'), 1)
+      << "quiet but for the end: " << watched.out;
+  EXPECT_NE(watched.out.find("run 2, second: completed"), std::string::npos) << watched.out;
+  EXPECT_EQ(watched.err, "");
+  EXPECT_EQ(fogbench({"queue"}).out, "The queue is empty.\n");
+
+  const auto runs = json({"runs", "--store", store(), "--json"})["runs"];
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[0]["outcome"], "completed");
+  EXPECT_EQ(runs[0]["points"], 6);
+  EXPECT_TRUE(has_event(stored("1"), "run, by ")) << stored("1")["events"];
+
+  expect_refused(fogbench({"run", "no-such"}), 3, "coil-sweep");
+  expect_refused(fogbench({"run", "coil-sweep", "--set", "levels_ut=0,900"}), 3, "900");
+  expect_refused(fogbench({"pause"}), 4, "nothing is running");
+  expect_refused(fogbench({"abort"}), 4, "nothing is running");
+  expect_refused(fogbench({"resume"}), 4, "nothing is running");
+  expect_refused(fogbench({"answer", "yes"}), 4, "no prompt waits");
+  expect_refused(fogbench({"queue", "--remove", "9"}), 4, "job 9 is not in the queue");
+  EXPECT_EQ(fogbench({"answer", "perhaps"}).status, 2);
+
+  daemon->signal(SIGTERM);
+  const Finished stopped = daemon->wait(30s);
+  EXPECT_EQ(stopped.status, 0) << stopped.err;
+  EXPECT_FALSE(std::filesystem::exists(socket()));
+  expect_refused(fogbench({"status"}), 4, "no fogbenchd serves " + socket());
+}
+
+TEST_F(ControlTest, PausesResumesAndAbortsToTheSafeState) {
+  const auto daemon = serve();
+  json({"run", procedure("long", 500), "--json"});
+  json({"run", procedure("next", 1), "--json"});
+  wait_until(
+      [](const nlohmann::json& now) { return now["run"].is_object() && now["run"]["points"] > 0; });
+  ASSERT_EQ(fogbench({"pause"}).status, 0);
+  const auto paused =
+      wait_until([](const nlohmann::json& now) { return now["state"] == "paused"; });
+  EXPECT_EQ(paused["run"]["procedure"], "long");
+  EXPECT_GT(paused["run"]["remaining_s"], 1.0);
+  EXPECT_TRUE(paused["values"]["temperature_working_1_c"].is_number());
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(status()["run"]["points"], paused["run"]["points"]) << "6 s of the bench later";
+  const Finished shown = fogbench({"status"});
+  EXPECT_NE(shown.out.find("paused: run 1, long"), std::string::npos) << shown.out;
+  EXPECT_NE(shown.out.find("degC"), std::string::npos) << shown.out;
+
+  ASSERT_EQ(fogbench({"resume"}).status, 0);
+  wait_until(
+      [&](const nlohmann::json& now) { return now["run"]["points"] > paused["run"]["points"]; });
+  const Finished aborted = fogbench({"abort"});
+  EXPECT_EQ(aborted.status, 0) << aborted.err;
+  EXPECT_NE(aborted.out.find("in its safe state"), std::string::npos) << aborted.out;
+  const auto held = status();
+  EXPECT_EQ(held["last_run"]["outcome"], "aborted");
+  EXPECT_EQ(held["queue"]["held"], true);
+  EXPECT_NE(fogbench({"queue"}).out.find("Held"), std::string::npos);
+  const auto record = stored("1");
+  for (const char* action : {"pause, by ", "resume, by ", "abort, by "}) {
+    EXPECT_TRUE(has_event(record, action)) << action << record["events"];
+  }
+  ASSERT_EQ(fogbench({"resume"}).status, 0);
+  EXPECT_EQ(fogbench({"watch"}).status, 0);
+  EXPECT_EQ(json({"runs", "--store", store(), "--json"})["runs"][1]["outcome"], "completed");
+}
+
+TEST_F(ControlTest, AnyClientAnswersAPrompt) {
+  const auto daemon = serve();
+  json({"run", procedure("asks", 1, "Turn the gyro."), "--json"});
+  EXPECT_EQ(wait_for_prompt()["prompt"]["text"], "Turn the gyro.");
+  expect_refused(fogbench({"answer", "yes", "--prompt", "99"}), 4, "prompt 99 does not wait");
+  const Finished yes = fogbench({"answer", "yes"});
+  EXPECT_EQ(yes.out, "Answered yes: Turn the gyro.\n") << yes.err;
+  EXPECT_EQ(fogbench({"watch"}).status, 0);
+  EXPECT_TRUE(has_event(stored("1"), "answer yes to \"Turn the gyro.\", by "));
+
+  json({"run", procedure("asks", 1, "Turn the gyro."), "--json"});
+  wait_for_prompt();
+  EXPECT_EQ(fogbench({"answer", "no"}).status, 0);
+  const auto after = wait_until([](const nlohmann::json& now) { return now["run"].is_null(); });
+  EXPECT_EQ(after["last_run"]["outcome"], "aborted");
+  EXPECT_EQ(after["last_run"]["safe_state_reached"], true);
+}
+
+TEST_F(ControlTest, ASignalAbortsAndASecondOneEndsAtOnce) {
+  auto daemon = serve();
+  json({"run", procedure("asks", 1, "Wait."), "--json"});
+  wait_for_prompt();
+  daemon->signal(SIGTERM);
+  const Finished stopped = daemon->wait(30s);
+  EXPECT_EQ(stopped.status, 0) << stopped.err;
+  const auto run = stored("1");
+  EXPECT_EQ(run["outcome"], "aborted");
+  EXPECT_EQ(run["safe_state_reached"], true);
+  EXPECT_TRUE(has_event(run, "abort, by SIGTERM"));
+
+  daemon = serve();
+  json({"run", procedure("asks", 1, "Wait."), "--json"});
+  wait_for_prompt();
+  // Both are there when it wakes.
+  daemon->signal(SIGSTOP);
+  daemon->signal(SIGTERM);
+  daemon->signal(SIGINT);
+  daemon->signal(SIGCONT);
+  const Finished forced = daemon->wait(30s);
+  EXPECT_EQ(forced.status, 4) << forced.err;
+  EXPECT_NE(forced.err.find("NOT in its safe state"), std::string::npos) << forced.err;
+
+  daemon = serve();  // what the forced end left is no hindrance
+  json({"run", procedure("asks", 1, "Wait."), "--json"});
+  wait_for_prompt();
+  const Finished client = fogbench({"abort", "--force"});
+  EXPECT_EQ(client.status, 0) << client.err;
+  EXPECT_EQ(daemon->wait(30s).status, 4);
+}
+
+TEST_F(ControlTest, OneBenchHasOneDaemonAndItWaitsForPeople) {
+  const auto daemon = serve();
+  const Finished second = support::run(daemon_command());
+  EXPECT_EQ(second.status, 4);
+  EXPECT_NE(second.err.find("another fogbenchd serves it"), std::string::npos) << second.err;
+  EXPECT_EQ(status()["state"], "idle");
+  const Finished virtual_clock = support::run(
+      command({"--bench", "simulated", "--store", store(), "--speed", "max"}, "fogbenchd"));
+  EXPECT_EQ(virtual_clock.status, 2);
+  EXPECT_NE(virtual_clock.err.find("waits for nobody"), std::string::npos) << virtual_clock.err;
+  EXPECT_EQ(support::run(daemon_command({"--operators", "no such group"})).status, 3);
+  EXPECT_EQ(support::run(daemon_command({"--socket", "x", "coil-sweep"})).status, 2);
+}
+
+TEST_F(ControlTest, SystemdHandsItsSocketOver) {
+  const Process::Setup activated{
+      {}, [path = socket()] {
+        const int listening = ::socket(AF_UNIX, SOCK_STREAM, 0);
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        path.copy(address.sun_path, sizeof address.sun_path - 1);
+        if (bind(listening, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+            listen(listening, 10) != 0 || dup2(listening, 3) != 3) {
+          _exit(126);
+        }
+        setenv("LISTEN_PID", std::to_string(getpid()).c_str(), 1);
+        setenv("LISTEN_FDS", "1", 1);
+      }};
+  const auto daemon = serve({}, activated);
+  EXPECT_EQ(status()["state"], "idle");
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(30s).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(socket())) << "it is systemd's";
+}
+
+/// Runs `program` as that user, with one group.
+Process::Setup as_user(uid_t user, gid_t group) {
+  return {{}, [user, group] {
+            if (setgroups(1, &group) != 0 || setgid(group) != 0 || setuid(user) != 0) _exit(126);
+          }};
+}
+
+// Other users need root to be played; without it the daemon's own user is all there is.
+TEST_F(ControlTest, UnprivilegedUsersGetAPermissionError) {
+  if (geteuid() != 0) return;
+  const std::string client = (folder_ / "client").string();
+  std::filesystem::copy_file(tests::build_tree() / "fogbench", client);
+  const auto as = [&](uid_t user, gid_t group, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), client);
+    return support::run(arguments, as_user(user, group));
+  };
+  auto daemon = serve();
+  expect_refused(as(kStranger, kStranger, {"status"}), 4, "permission denied");
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(30s).status, 0);
+
+  daemon = serve({"--operators", "daemon"});
+  EXPECT_EQ(as(kStranger, kStranger, {"status"}).status, 0) << "everybody may look";
+  for (const std::vector<std::string>& action : {std::vector<std::string>{"run", "coil-sweep"},
+                                                 {"pause"},
+                                                 {"abort"},
+                                                 {"abort", "--force"},
+                                                 {"resume"},
+                                                 {"queue", "--remove", "1"}}) {
+    expect_refused(as(kStranger, kStranger, action), 4, "permission denied: nobody may not");
+  }
+  EXPECT_EQ(status()["state"], "idle");
+  const Finished allowed = as(kStranger, kOperators, {"run", "static-record"});
+  EXPECT_EQ(allowed.status, 0) << allowed.err;
+  EXPECT_EQ(as(kStranger, kOperators, {"abort"}).status, 0);
+  EXPECT_TRUE(has_event(stored("1"), "abort, by nobody"));
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(30s).status, 0);
+
+  daemon = serve({"--observers", "daemon"});
+  expect_refused(as(kStranger, kStranger, {"status"}), 4, "permission denied: nobody may not");
+  EXPECT_EQ(as(kStranger, kOperators, {"status"}).status, 0);
+  expect_refused(as(kStranger, kOperators, {"pause"}), 4, "permission denied: nobody may not");
+}
+
+}  // namespace
+}  // namespace fogbench::system_tests
