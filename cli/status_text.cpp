@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "config/units.hpp"
@@ -30,13 +31,12 @@ double real(const json& value) {
 }
 
 std::string span_text(const json& seconds) {
-  return procedures::duration_text(config::Seconds{real(seconds)});
+  return procedures::duration_text(config::Seconds{std::round(real(seconds))});
 }
 
-/// "temperature working 1  21.01 degC", two to a line.
+/// "temperature working 1  21.01 degC", two to a line. The units of these values have no '_'.
 std::string values_text(const json& values) {
-  std::string lines;
-  std::size_t cells = 0;
+  std::string lines, left;
   for (const auto& [key, value] : values.items()) {
     if (key == "time_s") continue;
     const std::string_view unit = config::unit_of(key);
@@ -44,11 +44,15 @@ std::string values_text(const json& values) {
     std::replace(name.begin(), name.end(), '_', ' ');
     const std::string shown =
         value.is_number() ? fmt::format("{:.3f}", value.get<double>()) : plain(value);
-    lines += fmt::format("  {:<22}{:>10} {:<5}", name, shown, unit);
-    if (++cells % 2 == 0) lines += '\n';
+    const std::string cell = fmt::format("  {:<22}{:>10} {}", name, shown, unit);
+    if (left.empty()) {
+      left = cell;
+    } else {
+      lines += fmt::format("{:<41}{}\n", left, cell);
+      left.clear();
+    }
   }
-  if (cells % 2 != 0) lines += '\n';
-  return lines;
+  return left.empty() ? lines : lines + left + '\n';
 }
 
 }  // namespace

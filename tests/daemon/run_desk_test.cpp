@@ -204,9 +204,12 @@ TEST_F(RunDeskTest, NothingRunsNothingCanBeStopped) {
 TEST_F(RunDeskTest, TheQueueHasAnEndAndJobsCanBeTakenOut) {
   enqueue(kAsks);
   wait_for_question();
+  const PlannedProcedure procedure = planned(kMeasures);
   std::uint64_t last = 0;
-  for (std::size_t i = 0; i < RunDesk::kMostJobs; ++i) last = enqueue(kMeasures);
-  const auto full = desk_.enqueue(planned(kMeasures), alice_);
+  for (std::size_t i = 0; i < RunDesk::kMostJobs; ++i) {
+    last = std::get<std::uint64_t>(desk_.enqueue(procedure, alice_));
+  }
+  const auto full = desk_.enqueue(procedure, alice_);
   EXPECT_EQ(std::get<RpcError>(full).code, RpcCode::kQueueFull);
   EXPECT_FALSE(desk_.remove(last, alice_));
   EXPECT_EQ(desk_.remove(last, alice_)->code, RpcCode::kNotFound);
