@@ -29,7 +29,7 @@ ordered_json to_json(const Figure& figure) {
 }
 
 Result<daemon::RunResults> results_of(daemon::RunLogReader& reader, std::int64_t run) {
-  const auto stored = reader.points(run);
+  const auto stored = reader.chain_points(run);
   if (!stored) return stored.error();
   std::vector<procedures::Point> points;
   for (const auto& point : *stored) {
@@ -268,7 +268,7 @@ Result<ordered_json> run_json(daemon::RunLogReader& reader, std::int64_t run) {
   if (!stored) return stored.error();
   const auto instruments = reader.instruments(run);
   if (!instruments) return instruments.error();
-  const auto points = reader.points(run);
+  const auto points = reader.chain_points(run);
   if (!points) return points.error();
   const auto results = results_of(reader, run);
   if (!results) return results.error();

@@ -40,7 +40,7 @@ Result<std::vector<Point>> valid_points(RunLogReader& reader, std::int64_t run, 
                  fmt::format("run {} was not completed ({}); --unfinished takes what it has", run,
                              info->outcome())};
   }
-  const auto stored = reader.points(run);
+  const auto stored = reader.chain_points(run);
   if (!stored) return stored.error();
   std::vector<Point> points;
   for (const StoredPoint& point : *stored) {

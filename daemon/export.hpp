@@ -10,8 +10,8 @@
 
 namespace fogbench::daemon {
 
-/// The valid points of a run, in time order. kBadInput for a run that was not completed, unless
-/// `unfinished` allows it, and for a run without points.
+/// The valid points of a run and of those that it takes up, in time order. kBadInput for a run that
+/// was not completed, unless `unfinished` allows it, and for a run without points.
 Result<std::vector<procedures::Point>> valid_points(RunLogReader& reader, std::int64_t run,
                                                     bool unfinished);
 

@@ -28,6 +28,8 @@ constexpr std::string_view name_of(procedures::RunOutcome outcome) {
       return "aborted";
     case procedures::RunOutcome::kFailed:
       return "failed";
+    case procedures::RunOutcome::kInterrupted:
+      return "interrupted";
   }
   return "";
 }

@@ -107,8 +107,8 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
   auto insert = database_->prepare(
       "INSERT INTO runs (procedure, procedure_json, bench, bench_json, scenario_json, seed, "
       "gyro_serial_number, operator_name, software_version, started_at, frame_rate_hz, "
-      "reference_rate_deg_per_h) VALUES "
-      "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "reference_rate_deg_per_h, continues, continues_at) VALUES "
+      "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   auto instrument = database_->prepare("INSERT INTO instruments VALUES (?, ?, ?, ?, ?, ?)");
   if (!insert) return insert.error();
   if (!instrument) return instrument.error();
@@ -122,8 +122,16 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
     insert->bind(header.software_version).bind(header.started_at);
     insert->bind(header.frame_rate_hz);
     insert->bind(header.reference_rate_deg_per_h);
+    if (header.continues) {
+      insert->bind(header.continues->run).bind(header.continues->first_step);
+    } else {
+      insert->bind_null().bind_null();
+    }
     if (const Status ok = insert->run(); !ok) return ok;
     run_ = database_->last_insert_id();
+    if (header.continues) {
+      if (const Status ok = take_up(*header.continues); !ok) return ok;
+    }
     for (const InstrumentRecord& record : instruments) {
       instrument->bind(run_).bind(record.role).bind(record.identity).bind(record.serial_number);
       instrument->bind(record.calibrated_on).bind(record.calibration_due);
@@ -133,6 +141,34 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
   });
   if (!written) return written.error();
   return run_;
+}
+
+/// Together with the begin of the run that takes it up: never one without the other.
+Status RunLog::take_up(const procedures::Continuation& before) {
+  const std::string why = fmt::format("measured anew in run {}, which takes this one up", run_);
+  for (const auto& repeated : before.repeated) {
+    auto voided = database_->prepare(
+        "UPDATE points SET void_because = ? WHERE run = ? AND time_s >= ? AND void_because IS "
+        "NULL");
+    if (!voided) return voided.error();
+    voided->bind(why).bind(repeated.run).bind(repeated.from_s);
+    if (const Status ok = voided->run(); !ok) return ok;
+  }
+  auto close = database_->prepare(
+      "UPDATE runs SET outcome = 'interrupted', reason = ? WHERE run = ? AND outcome IS NULL");
+  if (!close) return close.error();
+  close->bind(fmt::format("taken up by run {}", run_)).bind(before.run);
+  if (const Status ok = close->run(); !ok) return ok;
+  Statement& insert = statements_->event;
+  insert.bind(run_).bind(0.0).bind("warning").bind(before.says).bind(before.data_json);
+  return insert.run();
+}
+
+Status RunLog::give_up(std::int64_t run, const std::string& reason) {
+  auto close = database_->prepare(
+      "UPDATE runs SET outcome = 'interrupted', reason = ? WHERE run = ? AND outcome IS NULL");
+  if (!close) return close.error();
+  return commit(Sync::kFull, [&] { return close->bind(reason).bind(run).run(); });
 }
 
 Status RunLog::step_started(const std::string& path, const std::string& what, double time_s) {

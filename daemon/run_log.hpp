@@ -36,6 +36,9 @@ class RunLog final : public procedures::Recorder {
   Status gyro_samples(const drivers::GyroBlock& block) override;
   Status end_run(const procedures::RunEnd& end) override;
 
+  /// Closes a run that nobody ended and nobody will take up.
+  Status give_up(std::int64_t run, const std::string& reason);
+
  private:
   explicit RunLog(std::unique_ptr<Database> database);
   Status prepare();
@@ -44,6 +47,7 @@ class RunLog final : public procedures::Recorder {
   /// Runs `write` and whatever waits in one transaction.
   template <class Write>
   Status commit(Sync sync, Write write);
+  Status take_up(const procedures::Continuation& before);
   Status write_monitor();
   Status write_chunk(std::size_t frames);
 

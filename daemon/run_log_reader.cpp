@@ -29,8 +29,13 @@ constexpr auto kSelectRuns =
     "frames_invalid, frames_repeated, frames_missing, bytes_skipped, raw_sha256, "
     "(SELECT count(*) FROM points WHERE points.run = runs.run), "
     "(SELECT count(void_because) FROM points WHERE points.run = runs.run), "
-    "(SELECT coalesce(sum(frames), 0) FROM gyro_chunks WHERE gyro_chunks.run = runs.run) "
+    "(SELECT coalesce(sum(frames), 0) FROM gyro_chunks WHERE gyro_chunks.run = runs.run), {} "
     "FROM runs";
+
+constexpr auto kContinuation =
+    "continues, continues_at, "
+    "(SELECT coalesce(max(later.run), 0) FROM runs AS later WHERE later.continues = runs.run)";
+constexpr auto kNoContinuation = "NULL, NULL, 0";
 
 /// The enumerator of that name; the last one for a name that this version does not know.
 template <class Enum, std::size_t N>
@@ -42,7 +47,7 @@ Enum parse(const std::string& name, const Enum (&values)[N]) {
 }
 
 constexpr RunOutcome kOutcomes[] = {RunOutcome::kCompleted, RunOutcome::kAborted,
-                                    RunOutcome::kFailed};
+                                    RunOutcome::kFailed, RunOutcome::kInterrupted};
 constexpr PointKind kKinds[] = {PointKind::kBaseline, PointKind::kAverage, PointKind::kTransient};
 
 StoredRun read_run(const Statement& row) {
@@ -88,6 +93,12 @@ StoredRun read_run(const Statement& row) {
   stored.points = row.integer(column++);
   stored.points_void = row.integer(column++);
   stored.frames_stored = row.integer(column++);
+  if (!row.is_null(column)) {
+    header.continues.emplace();
+    header.continues->run = row.integer(column);
+    header.continues->first_step = row.text(column + 1);
+  }
+  stored.taken_up_by = row.integer(column + 2);
   return stored;
 }
 
@@ -116,17 +127,26 @@ RunLogReader::RunLogReader(std::unique_ptr<Database> database, fs::path path)
 Result<std::unique_ptr<RunLogReader>> RunLogReader::open(const fs::path& path) {
   auto database = open_store(path);
   if (!database) return database.error();
-  return std::unique_ptr<RunLogReader>(new RunLogReader(std::move(*database), path));
+  std::unique_ptr<RunLogReader> reader(new RunLogReader(std::move(*database), path));
+  const auto known = reader->database_->integer(
+      "SELECT count(*) FROM pragma_table_info('runs') WHERE name = 'continues'");
+  if (!known) return known.error();
+  reader->has_continuations_ = *known != 0;
+  return reader;
+}
+
+std::string RunLogReader::select_runs() const {
+  return fmt::format(kSelectRuns, has_continuations_ ? kContinuation : kNoContinuation);
 }
 
 Result<std::vector<StoredRun>> RunLogReader::runs() {
-  auto select = database_->prepare(fmt::format("{} ORDER BY run", kSelectRuns));
+  auto select = database_->prepare(select_runs() + " ORDER BY run");
   if (!select) return select.error();
   return collect<StoredRun>(*select, [&] { return read_run(*select); });
 }
 
 Result<StoredRun> RunLogReader::run(std::int64_t run) {
-  auto select = database_->prepare(fmt::format("{} WHERE run = ?", kSelectRuns));
+  auto select = database_->prepare(select_runs() + " WHERE run = ?");
   if (!select) return select.error();
   select->bind(run);
   const auto row = select->step();
@@ -168,6 +188,48 @@ Result<std::vector<StoredPoint>> RunLogReader::points(std::int64_t run) {
   });
 }
 
+Result<std::vector<StoredRun>> RunLogReader::chain(std::int64_t run) {
+  std::vector<StoredRun> parts;
+  while (true) {
+    auto part = this->run(run);
+    if (!part) return part.error();
+    parts.push_back(std::move(*part));
+    const auto& before = parts.back().header.continues;
+    // A run takes up an earlier one; a damaged store must not make this go round.
+    if (!before || before->run >= run) break;
+    run = before->run;
+  }
+  std::reverse(parts.begin(), parts.end());
+  return parts;
+}
+
+Result<std::vector<StoredPoint>> RunLogReader::chain_points(std::int64_t run) {
+  const auto parts = chain(run);
+  if (!parts) return parts.error();
+  std::vector<StoredPoint> all;
+  std::optional<double> first_zero_s;  // by the calendar: when the first run's time was 0
+  for (const StoredRun& part : *parts) {
+    auto points = this->points(part.run);
+    if (!points) return points.error();
+    if (parts->size() > 1) {
+      const auto steps = this->steps(part.run);
+      if (!steps) return steps.error();
+      const double begin_s = steps->empty() ? 0.0 : steps->front().started_s;
+      const double zero_s = drivers::seconds_of_utc(part.header.started_at) - begin_s;
+      if (!first_zero_s) first_zero_s = zero_s;
+      double shift_s = zero_s - *first_zero_s;
+      if (!all.empty()) {
+        const Point& last = all.back().point;
+        const double end_s = last.time_s + last.duration_s / 2.0;
+        if (!(begin_s + shift_s >= end_s)) shift_s = end_s - begin_s;
+      }
+      for (StoredPoint& point : *points) point.point.time_s += shift_s;
+    }
+    all.insert(all.end(), points->begin(), points->end());
+  }
+  return all;
+}
+
 Result<std::vector<InstrumentRecord>> RunLogReader::instruments(std::int64_t run) {
   auto select = database_->prepare(
       "SELECT role, identity, serial_number, calibrated_on, calibration_due FROM instruments "
@@ -199,6 +261,19 @@ Result<std::vector<StoredStep>> RunLogReader::steps(std::int64_t run) {
     return StoredStep{select->text(0), select->text(1), select->real(2), select->real(3),
                       select->text(4)};
   });
+}
+
+Result<double> RunLogReader::last_time(std::int64_t run) {
+  auto select = database_->prepare(
+      "SELECT coalesce(max(t), 0) FROM ("
+      "SELECT max(time_s) AS t FROM monitor WHERE run = ?1 UNION ALL "
+      "SELECT max(time_s) FROM events WHERE run = ?1 UNION ALL "
+      "SELECT max(coalesce(ended_s, started_s)) FROM steps WHERE run = ?1)");
+  if (!select) return select.error();
+  select->bind(run);
+  const auto row = select->step();
+  if (!row) return row.error();
+  return *row ? select->real(0) : 0.0;
 }
 
 Status RunLogReader::read_gyro(std::int64_t run,

@@ -17,7 +17,8 @@ namespace fogbench::daemon {
 
 struct StoredRun {
   std::int64_t run = 0;
-  procedures::RunHeader header;
+  procedures::RunHeader header;  ///< of a continuation: run and first step
+  std::int64_t taken_up_by = 0;  ///< 0: by none
   /// Empty: interrupted, or still under way in another program.
   std::optional<procedures::RunEnd> end;
   std::string raw_sha256;  ///< over the chunks' hashes; empty when interrupted
@@ -55,11 +56,19 @@ class RunLogReader {
   Result<std::vector<StoredRun>> runs();
   /// kBadInput when there is no such run.
   Result<StoredRun> run(std::int64_t run);
-  /// In time order, void ones too.
+  /// The run, and before it those that it takes up, oldest first.
+  Result<std::vector<StoredRun>> chain(std::int64_t run);
+  /// Of the run alone, in time order, void ones too.
   Result<std::vector<StoredPoint>> points(std::int64_t run);
+  /// Of the whole chain, in time order, void ones too, on one axis of time: that of its first run.
+  /// The gaps between the runs are in it as they were by the bench's calendar; where that was set
+  /// back meanwhile, a run follows right after the one before.
+  Result<std::vector<StoredPoint>> chain_points(std::int64_t run);
   Result<std::vector<procedures::InstrumentRecord>> instruments(std::int64_t run);
   Result<std::vector<StoredEvent>> events(std::int64_t run);
   Result<std::vector<StoredStep>> steps(std::int64_t run);
+  /// The run's last trace, seconds since power-on; 0 when there is none.
+  Result<double> last_time(std::int64_t run);
   /// Calls `use` with each chunk of the raw stream in turn and stops at its first error. A damaged
   /// chunk is kStore, with its number.
   Status read_gyro(std::int64_t run,
@@ -67,8 +76,10 @@ class RunLogReader {
 
  private:
   RunLogReader(std::unique_ptr<Database> database, std::filesystem::path path);
+  std::string select_runs() const;
   std::unique_ptr<Database> database_;
   std::filesystem::path path_;
+  bool has_continuations_ = true;  ///< false: of a schema that did not know them
 };
 
 }  // namespace fogbench::daemon

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/bench.hpp"
 #include "config/result.hpp"
@@ -47,9 +48,17 @@ Result<bool> is_simulated(const config::BenchConfig& bench);
 
 using config::Parameters;
 
+/// What a run needs to know of the one that it takes up (resumption.hpp).
+struct TakenUp {
+  procedures::Continuation continuation;  ///< what it says is written when it begins
+  std::vector<procedures::InstrumentRecord> instruments;  ///< as they were then
+  double stopped_at_s = 0.0;  ///< its last trace by the bench's calendar, seconds since 1970
+};
+
 struct PlannedProcedure {
   procedures::Plan plan;
   std::string procedure_json;  ///< the texts of its files and the parameters given, for the record
+  std::optional<TakenUp> takes_up;
 };
 
 /// Errors: kBadInput, kLimit.
@@ -82,6 +91,7 @@ class Session {
 
   /// Runs one procedure to its end in the safe state. `operator_name` is for the record, may be
   /// empty. Errors: as RunEngine::run.
+  /// kDevice when it takes up a run that other instruments measured.
   Result<procedures::RunSummary> run(const PlannedProcedure& procedure,
                                      const std::string& operator_name = {});
   procedures::RunEngine& engine() { return *engine_; }

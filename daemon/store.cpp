@@ -89,7 +89,8 @@ CREATE TABLE runs (
   outcome TEXT, reason TEXT, safe_state_reached INTEGER, ended_at TEXT,
   frames_good INTEGER, frames_bad_checksum INTEGER, frames_invalid INTEGER,
   frames_repeated INTEGER, frames_missing INTEGER, bytes_skipped INTEGER,
-  raw_sha256 TEXT);
+  raw_sha256 TEXT,
+  continues INTEGER REFERENCES runs, continues_at TEXT);
 CREATE TABLE instruments (
   run INTEGER NOT NULL REFERENCES runs, role TEXT NOT NULL, identity TEXT,
   serial_number TEXT, calibrated_on TEXT, calibration_due TEXT,
@@ -172,6 +173,22 @@ Status add_new_columns(Database& database) {
     if (const Status ok = transaction->commit(); !ok) return ok;
   }
   return {};
+}
+
+/// What the second version of the schema has and the first had not: runs that take up others.
+Status add_continuations(Database& database) {
+  const auto version = database.integer("PRAGMA user_version");
+  if (!version) return version.error();
+  if (*version >= kSchemaVersion) return {};
+  auto transaction = Transaction::begin(database);
+  if (!transaction) return transaction.error();
+  const Status added =
+      database.execute(fmt::format("ALTER TABLE runs ADD COLUMN continues INTEGER REFERENCES runs;"
+                                   "ALTER TABLE runs ADD COLUMN continues_at TEXT;"
+                                   "PRAGMA user_version = {}",
+                                   kSchemaVersion));
+  if (!added) return added;
+  return transaction->commit();
 }
 
 Status check_schema(Database& database, const fs::path& path) {
@@ -259,6 +276,7 @@ Result<std::unique_ptr<Database>> open_store_for_writing(const fs::path& path) {
   if (!database) return database;
   if (const Status ok = check_schema(**database, path); !ok) return ok.error();
   if (const Status ok = add_new_columns(**database); !ok) return ok.error();
+  if (const Status ok = add_continuations(**database); !ok) return ok.error();
   if (const Status ok = (*database)->execute("PRAGMA synchronous = FULL"); !ok) return ok.error();
   return database;
 }

@@ -13,7 +13,7 @@ namespace fogbench::daemon {
 
 /// "FOGB", in the file's header: tells a run log from any other database.
 inline constexpr int kApplicationId = 0x464F4742;
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;
 
 /// The columns of table `points` that are plain numbers, in the order of schema and exports.
 struct PointColumn {

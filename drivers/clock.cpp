@@ -3,6 +3,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstdio>
 #include <thread>
 
 namespace fogbench::drivers {
@@ -31,6 +33,19 @@ void SteadyClock::sleep_until(Instant deadline) {
 
 std::string utc_text(Clock::WallTime time) {
   return fmt::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(time));
+}
+
+double seconds_of_utc(const std::string& text) {
+  int year = 0;
+  unsigned month = 0, day = 0, hour = 0, minute = 0, second = 0;
+  char zone = 0;
+  const int read = std::sscanf(text.c_str(), "%4d-%2u-%2uT%2u:%2u:%2u%c", &year, &month, &day,
+                               &hour, &minute, &second, &zone);
+  const std::chrono::year_month_day date{std::chrono::year{year}, std::chrono::month{month},
+                                         std::chrono::day{day}};
+  if (read != 7 || zone != 'Z' || !date.ok()) return std::nan("");
+  const std::chrono::seconds day_start = std::chrono::sys_days{date}.time_since_epoch();
+  return static_cast<double>(day_start.count()) + 3600.0 * hour + 60.0 * minute + second;
 }
 
 VirtualClock::VirtualClock()

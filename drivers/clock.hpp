@@ -59,6 +59,9 @@ class VirtualClock final : public Clock {
 /// ISO 8601 to the second: "2026-01-01T00:00:00Z".
 std::string utc_text(Clock::WallTime time);
 
+/// Such a text as seconds since 1970, UTC; NaN for any other.
+double seconds_of_utc(const std::string& text);
+
 /// Seconds as a double, for results and tables.
 constexpr double to_seconds(Clock::Duration d) {
   return std::chrono::duration<double>(d).count();

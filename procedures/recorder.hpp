@@ -13,6 +13,20 @@
 
 namespace fogbench::procedures {
 
+/// A run that takes up another one, which was interrupted, where that one stopped.
+struct Continuation {
+  /// Points that are measured anew: those of `run` at or after `from_s`.
+  struct Repeated {
+    std::int64_t run = 0;
+    double from_s = 0.0;
+  };
+  std::int64_t run = 0;    ///< the one that is taken up
+  std::string first_step;  ///< path of the first step that is left of it
+  std::vector<Repeated> repeated;
+  std::string says;  ///< for the record
+  std::string data_json;
+};
+
 /// Everything that made the run, stored with it.
 struct RunHeader {
   std::string procedure;
@@ -27,6 +41,7 @@ struct RunHeader {
   std::string started_at;  ///< ISO 8601, UTC
   double frame_rate_hz = 0.0;
   double reference_rate_deg_per_h = 0.0;
+  std::optional<Continuation> continues;
 };
 
 /// An instrument as it identified itself, with its certificate.
@@ -79,7 +94,9 @@ struct MonitorRow {
   double azimuth_deg = 0.0;
 };
 
-enum class RunOutcome { kCompleted, kAborted, kFailed };
+/// A run ends as one of the first three. The last is written when nobody ended it and another run
+/// takes it up, or a person gives it up.
+enum class RunOutcome { kCompleted, kAborted, kFailed, kInterrupted };
 
 struct RunEnd {
   RunOutcome outcome = RunOutcome::kCompleted;

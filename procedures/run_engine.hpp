@@ -65,6 +65,9 @@ class RunEngine {
   /// failed or aborted run is a RunSummary that says so. An engine may run again after an end.
   Result<RunSummary> run(const Plan& plan, const RunHeader& header);
 
+  /// Asks each instrument who it is. Errors: the instrument's.
+  Result<std::vector<InstrumentRecord>> identify_instruments();
+
   /// For an operator whose answer takes time: called from within confirm() again and again until it
   /// has come. Keeps watch over the bench for up to a second. An error (an abort, an instrument
   /// that is gone) means that nobody need answer any more: confirm() returns it.
@@ -79,7 +82,6 @@ class RunEngine {
 
  private:
   class Run;
-  Result<std::vector<InstrumentRecord>> identify_instruments();
 
   const config::BenchConfig& config_;
   drivers::Bench& bench_;

@@ -1,0 +1,196 @@
+#include "daemon/resumption.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "procedures/resume_plan.hpp"
+
+namespace fogbench::daemon {
+namespace fs = std::filesystem;
+using procedures::Continuation;
+using procedures::Plan;
+
+namespace {
+
+/// Gone with its files when it goes out of scope.
+class ScratchFolder {
+ public:
+  static Result<ScratchFolder> make() {
+    std::error_code error;
+    std::string pattern = (fs::temp_directory_path(error) / "fogbench-XXXXXX").string();
+    if (error || mkdtemp(pattern.data()) == nullptr) {
+      return Error{ErrorCode::kStore, fmt::format("{}: no scratch folder: {}", pattern,
+                                                  std::generic_category().message(errno))};
+    }
+    return ScratchFolder(pattern);
+  }
+  ScratchFolder(ScratchFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  ScratchFolder& operator=(ScratchFolder&&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  explicit ScratchFolder(fs::path path) : path_(std::move(path)) {}
+  fs::path path_;
+};
+
+Error damaged(std::int64_t run) {
+  return config::bad_input(fmt::format("run {}: its record of the procedure is damaged", run));
+}
+
+/// The whole procedure as it was planned then.
+Result<PlannedProcedure> recorded_procedure(const StoredRun& run,
+                                            const config::BenchConfig& bench) {
+  const auto record =
+      nlohmann::ordered_json::parse(run.header.procedure_json, nullptr, /*exceptions=*/false);
+  if (!record.is_object() || !record.contains("files") || !record.contains("parameters") ||
+      !record["files"].is_object() || record["files"].empty() ||
+      !record["parameters"].is_object()) {
+    return damaged(run.run);
+  }
+  Parameters parameters;
+  for (const auto& [name, value] : record["parameters"].items()) {
+    if (value.is_number()) {
+      parameters[name] = value.get<double>();
+    } else {
+      if (!value.is_array()) return damaged(run.run);
+      std::vector<double> list;
+      for (const auto& entry : value) {
+        if (!entry.is_number()) return damaged(run.run);
+        list.push_back(entry.get<double>());
+      }
+      parameters[name] = std::move(list);
+    }
+  }
+  const auto folder = ScratchFolder::make();
+  if (!folder) return folder.error();
+  for (const auto& [name, text] : record["files"].items()) {
+    const fs::path file = folder->path() / fs::path(name).filename();
+    std::ofstream out(file, std::ios::binary);
+    if (!text.is_string() || !(out << text.get_ref<const std::string&>()) || !out.flush()) {
+      return Error{ErrorCode::kStore, fmt::format("{}: cannot be written", file.string())};
+    }
+  }
+  const std::string first = record["files"].items().begin().key();
+  return plan_procedure((folder->path() / first).string(), bench, parameters);
+}
+
+std::optional<std::size_t> index_of(const Plan& plan, std::string_view path) {
+  const auto found = std::find_if(plan.steps.begin(), plan.steps.end(),
+                                  [&](const auto& step) { return step.path == path; });
+  if (found == plan.steps.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - plan.steps.begin());
+}
+
+/// The index of the step that the run had reached; nothing when the record does not fit the plan.
+std::optional<std::size_t> position(const StoredRun& run, const std::vector<StoredStep>& steps,
+                                    const Plan& whole) {
+  const auto last = std::find_if(steps.rbegin(), steps.rend(), [](const StoredStep& step) {
+    return !step.path.starts_with(procedures::kRedone);
+  });
+  if (last == steps.rend()) {
+    if (!run.header.continues) return 0;
+    const std::string& path = run.header.continues->first_step;
+    return path.empty() ? whole.steps.size() : index_of(whole, path);
+  }
+  auto index = index_of(whole, last->path);
+  if (index && !std::isnan(last->ended_s)) ++*index;
+  return index;
+}
+
+/// From the step at `path` on, everything is measured anew: in the last run of the chain that has
+/// begun it, and in those after that one.
+Result<std::vector<Continuation::Repeated>> repeated(RunLogReader& log,
+                                                     const std::vector<StoredRun>& chain,
+                                                     const std::string& path) {
+  std::vector<Continuation::Repeated> from;
+  for (auto run = chain.rbegin(); run != chain.rend(); ++run) {
+    const auto steps = log.steps(run->run);
+    if (!steps) return steps.error();
+    const auto begun = std::find_if(steps->rbegin(), steps->rend(),
+                                    [&](const StoredStep& step) { return step.path == path; });
+    if (begun != steps->rend()) {
+      from.push_back({run->run, begun->started_s});
+      return from;
+    }
+    from.push_back({run->run, 0.0});
+  }
+  return std::vector<Continuation::Repeated>{};  // it was never begun
+}
+
+Status check(const StoredRun& run, const Setup& setup) {
+  const auto refused = [&](const std::string& why) {
+    return config::bad_input(fmt::format("run {} cannot be taken up: {}", run.run, why));
+  };
+  if (run.completed()) return refused("it was completed");
+  if (run.taken_up_by != 0) return refused(fmt::format("run {} did already", run.taken_up_by));
+  if (run.header.bench != setup.bench.name) {
+    return refused(
+        fmt::format("it is of bench {}, expected {}", run.header.bench, setup.bench.name));
+  }
+  if (run.header.bench_json != setup.bench_json) {
+    return refused(
+        "the bench's file, or one of its instruments', was another then: the points would not be "
+        "of one bench");
+  }
+  if (run.header.scenario_json != setup.scenario_json) return refused("it is of another scenario");
+  return {};
+}
+
+}  // namespace
+
+Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, const Setup& setup) {
+  const auto chain = log.chain(run);
+  if (!chain) return chain.error();
+  const StoredRun& last = chain->back();
+  if (const Status good = check(last, setup); !good) return good.error();
+  auto planned = recorded_procedure(last, setup.bench);
+  if (!planned) return planned.error();
+  const auto steps = log.steps(run);
+  if (!steps) return steps.error();
+  const auto at = position(last, *steps, planned->plan);
+  if (!at) return damaged(run);
+  auto resumed = procedures::resume_plan(planned->plan, *at, setup.bench);
+  if (!resumed) return resumed.error();
+
+  TakenUp before;
+  before.continuation.run = run;
+  if (resumed->first < planned->plan.steps.size()) {
+    before.continuation.first_step = planned->plan.steps[resumed->first].path;
+    auto voids = repeated(log, *chain, before.continuation.first_step);
+    if (!voids) return voids.error();
+    before.continuation.repeated = std::move(*voids);
+  }
+  auto instruments = log.instruments(run);
+  if (!instruments) return instruments.error();
+  before.instruments = std::move(*instruments);
+  const auto stopped = log.last_time(run);
+  if (!stopped) return stopped.error();
+  const double begun_s = steps->empty() ? *stopped : steps->front().started_s;
+  before.stopped_at_s =
+      drivers::seconds_of_utc(last.header.started_at) + std::max(0.0, *stopped - begun_s);
+  planned->plan = std::move(resumed->plan);
+  planned->takes_up = std::move(before);
+  return planned;
+}
+
+Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const std::string& bench) {
+  const auto runs = log.runs();
+  if (!runs) return runs.error();
+  const auto last = std::find_if(runs->rbegin(), runs->rend(),
+                                 [&](const StoredRun& run) { return run.header.bench == bench; });
+  if (last == runs->rend() || last->end) return std::optional<StoredRun>{};
+  return std::optional(*last);
+}
+
+}  // namespace fogbench::daemon

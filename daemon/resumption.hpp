@@ -1,0 +1,26 @@
+#pragma once
+// Taking up a run that was not completed: a crash, a power cut, a fault, an abort. The run log is
+// the journal: a step is on record before it acts, a point before anybody hears of it.
+//
+// The run that takes it up is a new one, with a number, a stream and a record of its own, and names
+// the old one. What the old one measured stays, but for the step that was interrupted and, of an
+// indivisible block or a heating, all of it (resume_plan.hpp): that is void there and measured
+// anew. Both together are one set of measurements (RunLogReader::chain_points).
+
+#include <cstdint>
+#include <optional>
+
+#include "daemon/run_log_reader.hpp"
+#include "daemon/session.hpp"
+
+namespace fogbench::daemon {
+
+/// Planned from the files' texts in the record, whatever has become of the files. Errors: kBadInput
+/// when there is no such run, it was completed or taken up already, or bench, instruments' files or
+/// scenario are not those of the record; kLimit; kStore.
+Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, const Setup& setup);
+
+/// The last run of this bench, when nobody ended it.
+Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const std::string& bench);
+
+}  // namespace fogbench::daemon
