@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "daemon/desk_json.hpp"
+#include "daemon/metrics.hpp"
 #include "daemon/session.hpp"
 
 namespace fogbench::daemon {
@@ -158,6 +159,12 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
        Role::kObserver,
        {},
        [](Self& self, const json& params, Caller&) { return runs(self.desk_, params); }},
+      {"metrics",
+       Role::kObserver,
+       {},
+       [](Self& self, const json&, Caller&) -> Outcome {
+         return ordered_json{{"text", self.metrics()}};
+       }},
       {"watch",
        Role::kObserver,
        {"every_s", "template"},
@@ -233,11 +240,13 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
 std::string ControlMethods::answer(std::string_view line, Caller& caller) {
   const auto parsed = parse_request(line);
   if (const auto* refused = std::get_if<RpcRefusal>(&parsed)) {
+    ++totals_.refusals[fmt::to_string(static_cast<int>(refused->error.code))];
     return format_error(refused->id, refused->error);
   }
   const auto& request = std::get<RpcRequest>(parsed);
   const auto outcome = [&]() -> Outcome {
     const Method* method = find(request.method);
+    ++totals_.requests[method == nullptr ? "unknown" : request.method];
     if (method == nullptr) {
       return RpcError{RpcCode::kMethodNotFound, "there is no method of that name"};
     }
@@ -260,9 +269,15 @@ std::string ControlMethods::answer(std::string_view line, Caller& caller) {
       return RpcError{RpcCode::kInternal, error.what()};
     }
   }();
+  const auto* error = std::get_if<RpcError>(&outcome);
+  if (error != nullptr) ++totals_.refusals[fmt::to_string(static_cast<int>(error->code))];
   if (request.id.empty()) return {};
-  if (const auto* error = std::get_if<RpcError>(&outcome)) return format_error(request.id, *error);
+  if (error != nullptr) return format_error(request.id, *error);
   return format_result(request.id, std::get<ordered_json>(outcome));
+}
+
+std::string ControlMethods::metrics() const {
+  return metrics_text(bench_.name, desk_.view(), totals_);
 }
 
 std::string ControlMethods::news(Caller& caller) {

@@ -9,6 +9,7 @@
 #include "daemon/control_server.hpp"
 #include "daemon/json_rpc.hpp"
 #include "daemon/run_desk.hpp"
+#include "daemon/totals.hpp"
 
 namespace fogbench::daemon {
 
@@ -24,6 +25,11 @@ class ControlMethods final : public ControlService {
   /// An operator has asked for the end of the process, whatever the bench does.
   bool forced() const { return forced_; }
 
+  /// It counts requests and refusals; the rest is the server's to fill in.
+  ControlTotals& totals() { return totals_; }
+  /// In the text format of Prometheus.
+  std::string metrics() const;
+
  private:
   struct Method;
   static const Method* find(const std::string& name);
@@ -31,6 +37,7 @@ class ControlMethods final : public ControlService {
   RunDesk& desk_;
   config::BenchConfig bench_;
   bool forced_ = false;
+  ControlTotals totals_;
 };
 
 }  // namespace fogbench::daemon

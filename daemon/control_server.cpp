@@ -84,6 +84,7 @@ void ControlServer::accept_clients() {
     auto client = std::make_unique<Client>(accepted, Caller{peer ? peer->uid : 0, role, {}});
     if (!peer) continue;
     if (const auto why = refusal(*peer, role)) {
+      ++refused_;
       const std::string answer = format_error("null", {RpcCode::kTooManyConnections, *why});
       // One attempt: nobody waits for a client that is sent away.
       (void)send(accepted, answer.data(), answer.size(), MSG_NOSIGNAL | MSG_DONTWAIT);

@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,6 +69,8 @@ class ControlServer {
   /// does it.
   void serve_once();
   std::size_t connections() const { return clients_.size(); }
+  /// How many were one too many, since the start.
+  std::uint64_t refused() const { return refused_; }
 
  private:
   static constexpr std::chrono::milliseconds kLongestWait{200};
@@ -88,6 +91,7 @@ class ControlServer {
   ControlService& service_;
   drivers::Clock& clock_;
   std::vector<std::unique_ptr<Client>> clients_;
+  std::uint64_t refused_ = 0;
   /// Out of file handles: not before then.
   drivers::Clock::Instant accept_again_ = drivers::Clock::Instant::min();
 };

@@ -25,13 +25,6 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
 
-/// "starting" has no state of the engine: the instruments are being identified.
-std::string_view state_of(const DeskView& view) {
-  if (!view.run) return "idle";
-  if (view.run->run == 0) return "starting";
-  return procedures::name_of(view.run->progress.state);
-}
-
 ordered_json to_json(const PresentRun& run) {
   const procedures::Progress& now = run.progress;
   return {{"run", run.run == 0 ? ordered_json() : ordered_json(run.run)},
@@ -83,6 +76,13 @@ ordered_json or_null(const std::optional<T>& value) {
 }
 
 }  // namespace
+
+std::string_view state_of(const DeskView& view) {
+  if (!view.run) return "idle";
+  // The instruments are being identified, which is no state of the engine.
+  if (view.run->run == 0) return "starting";
+  return procedures::name_of(view.run->progress.state);
+}
 
 ordered_json to_json(const DeskView& view) {
   ordered_json question, events = ordered_json::array();

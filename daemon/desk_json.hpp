@@ -3,11 +3,15 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/run_desk.hpp"
 
 namespace fogbench::daemon {
+
+/// idle, starting, running, paused, stopping.
+std::string_view state_of(const DeskView& view);
 
 nlohmann::ordered_json to_json(const DeskView& view);
 nlohmann::ordered_json to_json(const std::vector<QueuedJob>& queue);

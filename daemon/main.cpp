@@ -14,6 +14,7 @@
 
 #include "config/exit_status.hpp"
 #include "daemon/abort_on_signal.hpp"
+#include "daemon/manual.hpp"
 #include "daemon/run_options.hpp"
 #include "daemon/serve.hpp"
 #include "daemon/session.hpp"
@@ -23,6 +24,29 @@
 
 namespace fogbench::daemon {
 namespace {
+
+ManualText manual_text() {
+  return {
+      8,
+      "owns a bench of fiber-optic gyros, and runs procedures on it",
+      "Without a procedure it serves the control socket: it brings the bench to its safe state "
+      "and runs what operators queue with fogbench run. With procedures it runs them in the "
+      "foreground, one after the other, and ends. One SIGTERM, SIGINT or SIGHUP aborts the run "
+      "to the safe state and ends the daemon; a second one ends it at once and leaves the bench "
+      "as it is. As the service fogbenchd.service it is configured in /etc/default/fogbenchd.",
+      {{"FOGBENCH_STORE", "The run log to write, unless --store is given."},
+       {"FOGBENCH_SOCKET", "The control socket to serve, unless --socket is given."},
+       {"FOGBENCH_CONFIG_DIR", "Where the ready files are, instead of beside the program."},
+       {"NOTIFY_SOCKET, WATCHDOG_USEC, LISTEN_FDS, RUNTIME_DIRECTORY",
+        "As systemd sets them: readiness, watchdog, socket activation, place of the socket."}},
+      {{"/etc/default/fogbenchd", "Bench and options of the service."},
+       {"/run/fogbench/control.sock", "The service's control socket."},
+       {"/run/fogbench/fogbench.prom", "Its metrics, for node_exporter's textfile collector."},
+       {"/var/lib/fogbench/fogbench.db", "Its run log."},
+       {"/usr/share/fogbench/config", "The ready benches, procedures, models and scenarios."},
+       {"/usr/share/doc/fogbench", "The protocol of the socket, the run log's tables."}},
+      "fogbench(1)"};
+}
 
 struct DaemonOptions {
   SetupOptions setup;
@@ -35,6 +59,7 @@ struct DaemonOptions {
 
 void declare(CLI::App& app, DaemonOptions& options) {
   app.set_version_flag("--version", "fogbenchd " FOGBENCH_VERSION);
+  add_manual_options(app);
   CLI::Option* procedures = app.add_option(
       "PROCEDURE", options.procedures,
       "Procedure files, or ready ones, in their order (default: those that operators queue)");
@@ -52,6 +77,9 @@ void declare(CLI::App& app, DaemonOptions& options) {
       ->excludes(procedures);
   app.add_option("--observers", options.serve.observers,
                  "Group whose members may look (default: everybody, when --operators is given)")
+      ->excludes(procedures);
+  app.add_option("--metrics", options.serve.metrics,
+                 "Metrics for Prometheus, written to this file every 10 s")
       ->excludes(procedures);
   app.footer(
       "A bench whose instruments have connections is reached through them; a prompt is answered "
@@ -152,6 +180,12 @@ int main(int argc, char** argv) {
   CLI::App app{"fogbenchd - runs acceptance procedures on a bench and logs them", "fogbenchd"};
   fogbench::daemon::DaemonOptions options;
   fogbench::daemon::declare(app, options);
+  if (const auto manual =
+          fogbench::daemon::asked_manual(argc, argv, app, fogbench::daemon::manual_text())) {
+    return std::fputs(manual->c_str(), stdout) < 0 || std::fflush(stdout) != 0
+               ? static_cast<int>(ExitStatus::kFailed)
+               : static_cast<int>(ExitStatus::kDone);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {  // --help, --version

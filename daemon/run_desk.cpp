@@ -147,6 +147,11 @@ bool RunDesk::aborting() const {
   return view_.run && view_.run->abort_requested;
 }
 
+RunDesk::Pulse RunDesk::pulse() const {
+  const Lock lock(mutex_);
+  return pulse_;
+}
+
 bool RunDesk::deserted() const {
   const Lock lock(mutex_);
   return deserted_;
@@ -159,7 +164,9 @@ void RunDesk::attach(procedures::RunEngine& engine) {
 
 std::optional<Job> RunDesk::next_job() {
   std::unique_lock lock(mutex_);
+  pulse_.waits_for_job = true;
   job_or_close_.wait(lock, [this] { return view_.closing || (!queue_.empty() && !view_.held); });
+  pulse_.waits_for_job = false;
   if (view_.closing) {
     deserted_ = true;
     return std::nullopt;
@@ -197,6 +204,7 @@ void RunDesk::run_begun(std::int64_t run) {
 void RunDesk::progressed(const procedures::Progress& progress) {
   const Lock lock(mutex_);
   view_.run->progress = progress;
+  ++pulse_.beats;
   changed();
 }
 
@@ -218,8 +226,14 @@ void RunDesk::saw(const procedures::Point& point) {
   changed();
 }
 
+void RunDesk::saw(const drivers::StreamStatistics& stream) {
+  const Lock lock(mutex_);
+  view_.totals.stream = stream;
+}
+
 void RunDesk::saw(SeenEvent event) {
   const Lock lock(mutex_);
+  ++view_.totals.events[event.severity];
   view_.events.push_back(std::move(event));
   if (view_.events.size() > kMostEvents) view_.events.pop_front();
   changed();
@@ -252,6 +266,7 @@ void RunDesk::run_ended(const Result<procedures::RunSummary>& summary) {
   if (ended.outcome != name_of(procedures::RunOutcome::kCompleted) && !queue_.empty()) {
     view_.held = true;
   }
+  ++view_.totals.runs[ended.outcome];
   view_.run.reset();
   view_.question.reset();
   view_.last_run = ended;

@@ -21,6 +21,7 @@
 
 #include "daemon/json_rpc.hpp"
 #include "daemon/session.hpp"
+#include "daemon/totals.hpp"
 #include "procedures/recorder.hpp"
 #include "procedures/run_engine.hpp"
 
@@ -89,6 +90,7 @@ struct DeskView {
   std::size_t jobs = 0;
   bool held = false;
   bool closing = false;
+  BenchTotals totals;
 };
 
 /// An action for the run's record, with who did it.
@@ -119,6 +121,12 @@ class RunDesk {
   std::vector<EndedRun> ended_runs() const;
   /// An abort has been asked for and the bench is not safe yet.
   bool aborting() const;
+  /// How the bench's thread is: `beats` rises about once a second while it advances.
+  struct Pulse {
+    std::uint64_t beats = 0;
+    bool waits_for_job = false;
+  };
+  Pulse pulse() const;
   /// The desk is closed and the bench's thread has seen it.
   bool deserted() const;
 
@@ -132,6 +140,7 @@ class RunDesk {
   void saw(const procedures::MonitorRow& row);
   void saw(const procedures::Point& point);
   void saw(SeenEvent event);
+  void saw(const drivers::StreamStatistics& stream);
   void voided(int block);
   /// From here on no order reaches the engine.
   void run_ending(const procedures::RunEnd& end);
@@ -151,6 +160,7 @@ class RunDesk {
   mutable std::mutex mutex_;
   std::condition_variable job_or_close_;
   procedures::RunEngine* engine_ = nullptr;
+  Pulse pulse_;
   bool deserted_ = false;
   bool engine_runs_ = false;  ///< between run_begun and run_ending
   std::deque<Job> queue_;

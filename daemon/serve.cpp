@@ -21,8 +21,10 @@
 #include "daemon/control_socket.hpp"
 #include "daemon/desk_operator.hpp"
 #include "daemon/desk_recorder.hpp"
+#include "daemon/metrics.hpp"
 #include "daemon/run_desk.hpp"
 #include "daemon/run_log.hpp"
+#include "daemon/service_manager.hpp"
 #include "drivers/file_descriptor.hpp"
 
 namespace fogbench::daemon {
@@ -110,14 +112,15 @@ void run_jobs(Session& session, RunDesk& desk) {
   }
 }
 
-/// Serves until the bench's thread has left the desk.
+/// Serves until the bench's thread has left the desk. `report` is called several times a second.
 void serve_clients(ControlServer& server, const ControlMethods& methods, RunDesk& desk, int signals,
-                   drivers::Clock& clock) {
+                   drivers::Clock& clock, const std::function<void()>& report) {
   bool asked_to_end = false;
   constexpr auto kNever = drivers::Clock::Instant::max();
   auto forced_at = kNever;  // when the abort under way will have lasted too long
   while (!desk.deserted()) {
     server.serve_once();
+    report();
     for (auto signal = next_signal(signals); !signal.empty(); signal = next_signal(signals)) {
       if (asked_to_end) end_at_once("a second signal, " + signal);
       asked_to_end = true;
@@ -150,6 +153,9 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   // Before the bench: two daemons must not touch one.
   const auto socket = open_socket(options.socket, rules->socket_mode());
   if (!socket) return socket.error();
+  drivers::SteadyClock clock;
+  const auto metrics = MetricsFile::open(options.metrics, clock);
+  if (!metrics) return metrics.error();
   const drivers::FileDescriptor signals(take_signals());
 
   const config::BenchConfig bench = setup.bench;
@@ -162,18 +168,28 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   auto session = Session::open(std::move(setup), seed, record, speed, person);
   if (!session) return session.error();
   procedures::RunEngine& engine = (*session)->engine();
-  engine.on_progress([&desk](const procedures::Progress& now) { desk.progressed(now); });
+  engine.on_progress([&desk, &open = **session](const procedures::Progress& now) {
+    desk.progressed(now);
+    desk.saw(open.stream());
+  });
   desk.attach(engine);
   person.attach(engine);
   spdlog::info("bench {} is in its safe state; run log {}{}; serving {}", bench.name,
                store.string(), seeded, (*socket)->name());
 
-  drivers::SteadyClock clock;
   ControlMethods methods(desk, bench);
+  methods.totals().started_unix_s = drivers::to_seconds(clock.wall_now().time_since_epoch());
   ControlServer server((*socket)->descriptor(), signals.get(), *rules, methods, clock);
   std::thread bench_thread(run_jobs, std::ref(**session), std::ref(desk));
   pthread_setname_np(bench_thread.native_handle(), "bench");
-  serve_clients(server, methods, desk, signals.get(), clock);
+  ServiceManager manager(clock);
+  manager.ready();
+  serve_clients(server, methods, desk, signals.get(), clock, [&] {
+    manager.report(desk);
+    methods.totals().connections = server.connections();
+    methods.totals().connections_refused = server.refused();
+    (*metrics)->update([&] { return methods.metrics(); });
+  });
   bench_thread.join();
 
   const auto last = desk.view().last_run;

@@ -95,6 +95,8 @@ class Session {
   Result<procedures::RunSummary> run(const PlannedProcedure& procedure,
                                      const std::string& operator_name = {});
   procedures::RunEngine& engine() { return *engine_; }
+  /// Of the gyro's stream, on the thread of run().
+  const drivers::StreamStatistics& stream() const { return bench_.gyro->statistics(); }
 
  private:
   using OpenRecord = std::function<Result<procedures::Recorder*>(Session&)>;

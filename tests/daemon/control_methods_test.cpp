@@ -55,7 +55,7 @@ class ControlMethodsTest : public testing::Test {
 };
 
 TEST_F(ControlMethodsTest, ObserversReadOperatorsActOthersDoNeither) {
-  for (const char* method : {"hello", "status", "queue", "runs", "watch", "unwatch"}) {
+  for (const char* method : {"hello", "status", "queue", "runs", "metrics", "watch", "unwatch"}) {
     EXPECT_TRUE(ask(method, json::object(), observer_).contains("result")) << method;
     EXPECT_EQ(refusal(method, json::object(), nobody_), RpcCode::kPermission) << method;
   }
