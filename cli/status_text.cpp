@@ -77,6 +77,15 @@ std::string status_text(const json& status) {
     const json& last = at(status, "last_run");
     if (last.is_object()) out += "last: " + ended_text(last) + "\n";
   }
+  const json& interrupted = at(status, "interrupted");
+  if (interrupted.is_object()) {
+    const std::string number = plain(at(interrupted, "run"));
+    out += fmt::format(
+        "run {}, {}, was interrupted with {} points: fogbench resume {} takes it up,\n"
+        "fogbench resume {} --discard gives it up\n",
+        number, plain(at(interrupted, "procedure")), plain(at(interrupted, "points")), number,
+        number);
+  }
   const json& queue = at(status, "queue");
   if (real(at(queue, "jobs")) > 0) {
     out += fmt::format("{} in the queue{}\n", plain(at(queue, "jobs")),

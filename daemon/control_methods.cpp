@@ -11,6 +11,9 @@
 
 #include "daemon/desk_json.hpp"
 #include "daemon/metrics.hpp"
+#include "daemon/parameters_json.hpp"
+#include "daemon/resumption.hpp"
+#include "daemon/run_log.hpp"
 #include "daemon/session.hpp"
 
 namespace fogbench::daemon {
@@ -41,26 +44,6 @@ std::optional<std::uint64_t> number_of(const json& params, const char* key) {
   const auto value = params.find(key);
   if (value == params.end() || !value->is_number_unsigned()) return std::nullopt;
   return value->get<std::uint64_t>();
-}
-
-/// {"average_s": 5, "levels_ut": [0, 300]} as --set gives them.
-std::optional<Parameters> parameters_of(const json& set) {
-  Parameters parameters;
-  if (!set.is_object()) return std::nullopt;
-  for (const auto& [name, value] : set.items()) {
-    if (value.is_number()) {
-      parameters[name] = value.get<double>();
-      continue;
-    }
-    if (!value.is_array()) return std::nullopt;
-    std::vector<double> list;
-    for (const json& entry : value) {
-      if (!entry.is_number()) return std::nullopt;
-      list.push_back(entry.get<double>());
-    }
-    parameters[name] = std::move(list);
-  }
-  return parameters;
 }
 
 Outcome status(RunDesk& desk, const json&) {
@@ -98,8 +81,23 @@ Outcome watch(const json& params, Caller& caller) {
   return ordered_json::object();
 }
 
-Outcome enqueue(RunDesk& desk, const config::BenchConfig& bench, const json& params,
-                const Caller& caller) {
+RpcError refusal(const Error& error) {
+  const bool limit = error.code == ErrorCode::kLimit;
+  return {limit ? RpcCode::kLimit : RpcCode::kBadInput, error.message};
+}
+
+Outcome enqueue(RunDesk& desk, Order order, PlannedProcedure planned, const Person& by) {
+  ordered_json answer{{"steps", planned.plan.steps.size()},
+                      {"estimate_s", planned.plan.estimate.count()}};
+  const auto queued = desk.enqueue(std::move(order), std::move(planned), by);
+  if (const auto* refused = std::get_if<RpcError>(&queued)) return *refused;
+  answer["job"] = std::get<std::uint64_t>(queued);
+  answer["held"] = desk.view().held;
+  return answer;
+}
+
+Outcome run(RunDesk& desk, const config::BenchConfig& bench, const json& params,
+            const Caller& caller) {
   const auto name = params.find("procedure");
   if (name == params.end() || !name->is_string()) {
     return invalid("/params/procedure: expected a procedure's name, or its file's full path");
@@ -109,19 +107,36 @@ Outcome enqueue(RunDesk& desk, const config::BenchConfig& bench, const json& par
   if (!parameters) {
     return invalid("/params/set: expected {\"name\": number or [number, number...]}");
   }
-  auto planned = plan_procedure(name->get<std::string>(), bench, *parameters);
-  if (!planned) {
-    const bool limit = planned.error().code == ErrorCode::kLimit;
-    return RpcError{limit ? RpcCode::kLimit : RpcCode::kBadInput, planned.error().message};
-  }
-  ordered_json answer{{"steps", planned->plan.steps.size()},
-                      {"estimate_s", planned->plan.estimate.count()}};
+  Order order{name->get<std::string>(), *parameters};
+  auto planned = plan_procedure(order.procedure, bench, order.set);
+  if (!planned) return refusal(planned.error());
   const Person by = person_of(caller, "run " + planned->plan.procedure);
-  const auto queued = desk.enqueue(std::move(*planned), by);
-  if (const auto* refused = std::get_if<RpcError>(&queued)) return *refused;
-  answer["job"] = std::get<std::uint64_t>(queued);
-  answer["held"] = desk.view().held;
-  return answer;
+  return enqueue(desk, std::move(order), std::move(*planned), by);
+}
+
+Outcome resume_run(RunDesk& desk, const Setup& setup, const std::filesystem::path& store,
+                   std::int64_t run, const Caller& caller) {
+  const auto log = RunLogReader::open(store);
+  if (!log) return refusal(log.error());
+  auto planned = plan_resumption(**log, run, setup);
+  if (!planned) return refusal(planned.error());
+  const Person by = person_of(caller, fmt::format("resume run {}", run));
+  return enqueue(desk, Order{{}, {}, run}, std::move(*planned), by);
+}
+
+Outcome discard_run(RunDesk& desk, const std::filesystem::path& store, std::int64_t run,
+                    const Caller& caller) {
+  const auto& offered = desk.view().interrupted;
+  if (!offered || offered->run != run) {
+    return RpcError{RpcCode::kNotFound, fmt::format("run {} does not wait to be taken up", run)};
+  }
+  const Person by = person_of(caller, fmt::format("discard run {}", run));
+  const auto log = RunLog::open(store);
+  if (!log) return refusal(log.error());
+  const Status given_up = (*log)->give_up(run, "given up by " + by.name);
+  if (!given_up) return refusal(given_up.error());
+  desk.withdraw_offer(run);
+  return ordered_json::object();
 }
 
 }  // namespace
@@ -143,7 +158,7 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
        [](Self& self, const json&, Caller& caller) -> Outcome {
          return ordered_json{{"protocol", kProtocolVersion},
                              {"version", FOGBENCH_VERSION},
-                             {"bench", self.bench_.name},
+                             {"bench", self.setup_.bench.name},
                              {"user", user_name(caller.uid)},
                              {"role", name_of(caller.role)}};
        }},
@@ -180,7 +195,7 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
        Role::kOperator,
        {"procedure", "set"},
        [](Self& self, const json& params, Caller& caller) {
-         return enqueue(self.desk_, self.bench_, params, caller);
+         return run(self.desk_, self.setup_.bench, params, caller);
        }},
       {"remove",
        Role::kOperator,
@@ -199,9 +214,21 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
        }},
       {"resume",
        Role::kOperator,
-       {},
-       [](Self& self, const json&, Caller& caller) {
-         return done(self.desk_.resume(person_of(caller, "resume")));
+       {"run"},
+       [](Self& self, const json& params, Caller& caller) -> Outcome {
+         if (!params.contains("run")) return done(self.desk_.resume(person_of(caller, "resume")));
+         const auto run = number_of(params, "run");
+         if (!run) return invalid("/params/run: expected a run's number");
+         return resume_run(self.desk_, self.setup_, self.store_, static_cast<std::int64_t>(*run),
+                           caller);
+       }},
+      {"discard",
+       Role::kOperator,
+       {"run"},
+       [](Self& self, const json& params, Caller& caller) -> Outcome {
+         const auto run = number_of(params, "run");
+         if (!run) return invalid("/params/run: expected a run's number");
+         return discard_run(self.desk_, self.store_, static_cast<std::int64_t>(*run), caller);
        }},
       {"abort",
        Role::kOperator,
@@ -277,7 +304,7 @@ std::string ControlMethods::answer(std::string_view line, Caller& caller) {
 }
 
 std::string ControlMethods::metrics() const {
-  return metrics_text(bench_.name, desk_.view(), totals_);
+  return metrics_text(setup_.bench.name, desk_.view(), totals_);
 }
 
 std::string ControlMethods::news(Caller& caller) {

@@ -2,10 +2,10 @@
 // The methods of protocol.md: who may call each, what its parameters must be, what it does at the
 // desk. On the control socket's thread.
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
-#include "config/bench.hpp"
 #include "daemon/control_server.hpp"
 #include "daemon/json_rpc.hpp"
 #include "daemon/run_desk.hpp"
@@ -15,9 +15,10 @@ namespace fogbench::daemon {
 
 class ControlMethods final : public ControlService {
  public:
-  /// The desk must outlive it. `bench` is what procedures are planned for.
-  ControlMethods(RunDesk& desk, config::BenchConfig bench)
-      : desk_(desk), bench_(std::move(bench)) {}
+  /// The desk must outlive it. `setup` is what procedures are planned for; `store` is the run log
+  /// that holds what was interrupted.
+  ControlMethods(RunDesk& desk, Setup setup, std::filesystem::path store)
+      : desk_(desk), setup_(std::move(setup)), store_(std::move(store)) {}
 
   std::string answer(std::string_view line, Caller& caller) override;
   std::string news(Caller& caller) override;
@@ -35,7 +36,8 @@ class ControlMethods final : public ControlService {
   static const Method* find(const std::string& name);
 
   RunDesk& desk_;
-  config::BenchConfig bench_;
+  Setup setup_;
+  std::filesystem::path store_;
   bool forced_ = false;
   ControlTotals totals_;
 };

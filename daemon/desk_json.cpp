@@ -52,6 +52,14 @@ ordered_json to_json(const EndedRun& run) {
           {"points", run.points}};
 }
 
+ordered_json to_json(const InterruptedRun& run) {
+  return {{"run", run.run},
+          {"procedure", run.procedure},
+          {"by", run.by},
+          {"started_at", run.started_at},
+          {"points", run.points}};
+}
+
 ordered_json to_json(const procedures::MonitorRow& row) {
   ordered_json values = ordered_json::object();
   for (const MonitorColumn& column : monitor_columns()) {
@@ -103,7 +111,8 @@ ordered_json to_json(const DeskView& view) {
           {"point", or_null(view.point)},
           {"events", events},
           {"queue", {{"jobs", view.jobs}, {"held", view.held}}},
-          {"last_run", or_null(view.last_run)}};
+          {"last_run", or_null(view.last_run)},
+          {"interrupted", or_null(view.interrupted)}};
 }
 
 ordered_json to_json(const std::vector<QueuedJob>& queue) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "daemon/parameters_json.hpp"
 #include "procedures/resume_plan.hpp"
 
 namespace fogbench::daemon {
@@ -54,24 +55,11 @@ Result<PlannedProcedure> recorded_procedure(const StoredRun& run,
   const auto record =
       nlohmann::ordered_json::parse(run.header.procedure_json, nullptr, /*exceptions=*/false);
   if (!record.is_object() || !record.contains("files") || !record.contains("parameters") ||
-      !record["files"].is_object() || record["files"].empty() ||
-      !record["parameters"].is_object()) {
+      !record["files"].is_object() || record["files"].empty()) {
     return damaged(run.run);
   }
-  Parameters parameters;
-  for (const auto& [name, value] : record["parameters"].items()) {
-    if (value.is_number()) {
-      parameters[name] = value.get<double>();
-    } else {
-      if (!value.is_array()) return damaged(run.run);
-      std::vector<double> list;
-      for (const auto& entry : value) {
-        if (!entry.is_number()) return damaged(run.run);
-        list.push_back(entry.get<double>());
-      }
-      parameters[name] = std::move(list);
-    }
-  }
+  const auto parameters = parameters_of(record["parameters"]);
+  if (!parameters) return damaged(run.run);
   const auto folder = ScratchFolder::make();
   if (!folder) return folder.error();
   for (const auto& [name, text] : record["files"].items()) {
@@ -82,7 +70,7 @@ Result<PlannedProcedure> recorded_procedure(const StoredRun& run,
     }
   }
   const std::string first = record["files"].items().begin().key();
-  return plan_procedure((folder->path() / first).string(), bench, parameters);
+  return plan_procedure((folder->path() / first).string(), bench, *parameters);
 }
 
 std::optional<std::size_t> index_of(const Plan& plan, std::string_view path) {

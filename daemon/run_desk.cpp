@@ -29,7 +29,7 @@ void RunDesk::note(const std::string& action, const Person& by) {
                     data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)});
 }
 
-std::variant<std::uint64_t, RpcError> RunDesk::enqueue(PlannedProcedure procedure,
+std::variant<std::uint64_t, RpcError> RunDesk::enqueue(Order order, PlannedProcedure procedure,
                                                        const Person& by) {
   const Lock lock(mutex_);
   if (view_.closing) return wrong_state("the daemon is stopping");
@@ -37,8 +37,10 @@ std::variant<std::uint64_t, RpcError> RunDesk::enqueue(PlannedProcedure procedur
     return RpcError{RpcCode::kQueueFull, fmt::format("the queue holds {} runs already", kMostJobs)};
   }
   // Nothing waits behind what failed: whoever asks now wants this run.
-  if (queue_.empty()) view_.held = false;
-  queue_.push_back({++jobs_ever_, std::move(procedure), by});
+  if (queue_.empty() || order.takes_up != 0) view_.held = false;
+  const auto place = order.takes_up != 0 ? queue_.begin() : queue_.end();
+  queue_.insert(place, {++jobs_ever_, std::move(order), std::move(procedure), by});
+  ++queue_changes_;
   view_.jobs = queue_.size();
   changed();
   job_or_close_.notify_one();
@@ -53,6 +55,7 @@ RunDesk::Refused RunDesk::remove(std::uint64_t job, const Person& /*by*/) {
     return RpcError{RpcCode::kNotFound, fmt::format("job {} is not in the queue", job)};
   }
   queue_.erase(found);
+  ++queue_changes_;
   if (queue_.empty()) view_.held = false;
   view_.jobs = queue_.size();
   changed();
@@ -142,6 +145,34 @@ std::vector<EndedRun> RunDesk::ended_runs() const {
   return {ended_.begin(), ended_.end()};
 }
 
+RunDesk::Waiting RunDesk::waiting() const {
+  const Lock lock(mutex_);
+  Waiting waiting{queue_changes_, {}};
+  if (starting_) waiting.orders.push_back(*starting_);
+  for (const Job& job : queue_) waiting.orders.emplace_back(job.order, job.by);
+  return waiting;
+}
+
+void RunDesk::offer(InterruptedRun run) {
+  const Lock lock(mutex_);
+  view_.interrupted = std::move(run);
+  changed();
+}
+
+bool RunDesk::withdraw_offer(std::int64_t run) {
+  const Lock lock(mutex_);
+  if (!view_.interrupted || view_.interrupted->run != run) return false;
+  view_.interrupted.reset();
+  changed();
+  return true;
+}
+
+void RunDesk::hold() {
+  const Lock lock(mutex_);
+  view_.held = !queue_.empty();
+  changed();
+}
+
 bool RunDesk::aborting() const {
   const Lock lock(mutex_);
   return view_.run && view_.run->abort_requested;
@@ -173,6 +204,8 @@ std::optional<Job> RunDesk::next_job() {
   }
   Job job = std::move(queue_.front());
   queue_.pop_front();
+  starting_.emplace(job.order, job.by);
+  ++queue_changes_;
   view_.jobs = queue_.size();
   PresentRun run;
   run.job = job.job;
@@ -195,6 +228,11 @@ std::optional<Job> RunDesk::next_job() {
 void RunDesk::run_begun(std::int64_t run) {
   const Lock lock(mutex_);
   view_.run->run = run;
+  if (starting_ && view_.interrupted && starting_->first.takes_up == view_.interrupted->run) {
+    view_.interrupted.reset();
+  }
+  starting_.reset();
+  ++queue_changes_;
   engine_runs_ = true;
   if (view_.run->abort_requested) engine_->request_abort();
   if (view_.run->pause_requested) engine_->request_pause();
@@ -257,6 +295,8 @@ void RunDesk::run_ending(const procedures::RunEnd& end) {
 void RunDesk::run_ended(const Result<procedures::RunSummary>& summary) {
   const Lock lock(mutex_);
   engine_runs_ = false;
+  starting_.reset();
+  ++queue_changes_;
   EndedRun ended{view_.run->job, view_.run->run, view_.run->procedure, view_.run->by};
   ended.points = view_.run->points;
   // Nothing was commanded in a run that never came to an end of its own.

@@ -16,6 +16,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -33,8 +34,16 @@ struct Person {
   std::uint32_t uid = 0;
 };
 
+/// What was asked for, as it can be planned again by another process.
+struct Order {
+  std::string procedure;  ///< a ready one's name, or a file's full path
+  Parameters set;
+  std::int64_t takes_up = 0;  ///< a run that was interrupted, in place of the two; 0: none
+};
+
 struct Job {
   std::uint64_t job = 0;
+  Order order;
   PlannedProcedure procedure;
   Person by;
 };
@@ -55,6 +64,15 @@ struct PresentRun {
   std::size_t points = 0;
   bool pause_requested = false;
   bool abort_requested = false;
+};
+
+/// A run that nobody ended, found when the daemon started.
+struct InterruptedRun {
+  std::int64_t run = 0;
+  std::string procedure;
+  std::string by;
+  std::string started_at;
+  std::int64_t points = 0;
 };
 
 struct EndedRun {
@@ -87,6 +105,7 @@ struct DeskView {
   std::optional<procedures::Point> point;        ///< the present run's last
   std::deque<SeenEvent> events;                  ///< the last ones, oldest first
   std::optional<EndedRun> last_run;
+  std::optional<InterruptedRun> interrupted;  ///< until it is taken up or given up
   std::size_t jobs = 0;
   bool held = false;
   bool closing = false;
@@ -107,7 +126,9 @@ class RunDesk {
 
   // --- The control socket's thread. A refusal is an RpcError.
   using Refused = std::optional<RpcError>;
-  std::variant<std::uint64_t, RpcError> enqueue(PlannedProcedure procedure, const Person& by);
+  /// A run that is taken up goes before what waits, and what waits goes on after it.
+  std::variant<std::uint64_t, RpcError> enqueue(Order order, PlannedProcedure procedure,
+                                                const Person& by);
   Refused remove(std::uint64_t job, const Person& by);
   Refused pause(const Person& by);
   /// Resumes a run, or a queue that is held.
@@ -119,6 +140,18 @@ class RunDesk {
   DeskView view() const;
   std::vector<QueuedJob> queue() const;
   std::vector<EndedRun> ended_runs() const;
+  /// What is to be done again if the process died now: the queue, and before it the job whose run
+  /// is not on record yet. `changes` rises with every change of it.
+  struct Waiting {
+    std::uint64_t changes = 0;
+    std::vector<std::pair<Order, Person>> orders;
+  };
+  Waiting waiting() const;
+  void offer(InterruptedRun run);
+  /// The run that was offered is given up. False: none of that number was.
+  bool withdraw_offer(std::int64_t run);
+  /// Nothing begins until somebody resumes.
+  void hold();
   /// An abort has been asked for and the bench is not safe yet.
   bool aborting() const;
   /// How the bench's thread is: `beats` rises about once a second while it advances.
@@ -164,6 +197,8 @@ class RunDesk {
   bool deserted_ = false;
   bool engine_runs_ = false;  ///< between run_begun and run_ending
   std::deque<Job> queue_;
+  std::optional<std::pair<Order, Person>> starting_;  ///< taken, and no run on record yet
+  std::uint64_t queue_changes_ = 0;
   std::uint64_t jobs_ever_ = 0, prompts_ever_ = 0;
   DeskView view_;
   std::optional<bool> answer_;

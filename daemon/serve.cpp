@@ -12,6 +12,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "config/exit_status.hpp"
@@ -22,6 +23,8 @@
 #include "daemon/desk_operator.hpp"
 #include "daemon/desk_recorder.hpp"
 #include "daemon/metrics.hpp"
+#include "daemon/queue_file.hpp"
+#include "daemon/resumption.hpp"
 #include "daemon/run_desk.hpp"
 #include "daemon/run_log.hpp"
 #include "daemon/service_manager.hpp"
@@ -88,6 +91,28 @@ Result<std::unique_ptr<ControlSocket>> open_socket(const std::string& named, mod
   const auto standard = socket_to_serve();
   if (!standard) return standard.error();
   return ControlSocket::open(*standard, mode);
+}
+
+/// What the last daemon left behind: a run that it did not end, and what was to be run after it.
+Status take_over(const Setup& setup, const std::filesystem::path& store, QueueFile& queue,
+                 RunDesk& desk) {
+  const auto log = RunLogReader::open(store);
+  if (!log) return log.error();
+  const auto left = interrupted_run(**log, setup.bench.name);
+  if (!left) return left.error();
+  if (*left) {
+    const procedures::RunHeader& header = (*left)->header;
+    spdlog::warn(
+        "run {}, {}, was interrupted; it waits to be taken up (fogbench resume {}) or "
+        "given up (fogbench resume {} --discard)",
+        (*left)->run, header.procedure, (*left)->run, (*left)->run);
+    desk.offer({(*left)->run, header.procedure, header.operator_name, header.started_at,
+                (*left)->points - (*left)->points_void});
+  }
+  if (const Status loaded = queue.load(desk, setup, store); !loaded) return loaded;
+  const std::size_t jobs = desk.view().jobs;
+  if (jobs > 0) spdlog::warn("{} runs wait in the queue, which is held (fogbench resume)", jobs);
+  return {};
 }
 
 /// The bench's thread.
@@ -158,15 +183,22 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   if (!metrics) return metrics.error();
   const drivers::FileDescriptor signals(take_signals());
 
-  const config::BenchConfig bench = setup.bench;
+  const Setup planned_for = setup;
   const std::string seeded = setup.simulated ? fmt::format(", seed {}", seed) : "";
-  auto log = RunLog::open(store);
-  if (!log) return log.error();
   RunDesk desk;
-  DeskRecorder record(**log, desk);
+  std::unique_ptr<RunLog> log;
+  std::optional<DeskRecorder> record;
   DeskOperator person(desk);
-  auto session = Session::open(std::move(setup), seed, record, speed, person);
+  const Session::OpenRecord open_record = [&]() -> Result<procedures::Recorder*> {
+    auto opened = RunLog::open(store);
+    if (!opened) return opened.error();
+    log = std::move(*opened);
+    return &record.emplace(*log, desk);
+  };
+  auto session = Session::open(std::move(setup), seed, open_record, speed, person);
   if (!session) return session.error();
+  QueueFile queue(store);
+  if (const Status taken = take_over(planned_for, store, queue, desk); !taken) return taken;
   procedures::RunEngine& engine = (*session)->engine();
   engine.on_progress([&desk, &open = **session](const procedures::Progress& now) {
     desk.progressed(now);
@@ -174,10 +206,10 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   });
   desk.attach(engine);
   person.attach(engine);
-  spdlog::info("bench {} is in its safe state; run log {}{}; serving {}", bench.name,
+  spdlog::info("bench {} is in its safe state; run log {}{}; serving {}", planned_for.bench.name,
                store.string(), seeded, (*socket)->name());
 
-  ControlMethods methods(desk, bench);
+  ControlMethods methods(desk, planned_for, store);
   methods.totals().started_unix_s = drivers::to_seconds(clock.wall_now().time_since_epoch());
   ControlServer server((*socket)->descriptor(), signals.get(), *rules, methods, clock);
   std::thread bench_thread(run_jobs, std::ref(**session), std::ref(desk));
@@ -188,6 +220,7 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
     manager.report(desk);
     methods.totals().connections = server.connections();
     methods.totals().connections_refused = server.refused();
+    queue.update(desk);
     (*metrics)->update([&] { return methods.metrics(); });
   });
   bench_thread.join();

@@ -14,6 +14,7 @@
 
 #include "config/json_file.hpp"
 #include "config/paths.hpp"
+#include "daemon/parameters_json.hpp"
 #include "drivers/open_bench.hpp"
 #include "drivers/open_ports.hpp"
 #include "procedures/estimate.hpp"
@@ -55,14 +56,6 @@ Result<std::vector<fs::path>> files_of_bench(const fs::path& file) {
 /// The name of a file may be any bytes; JSON text may not.
 std::string text_of(const nlohmann::ordered_json& record) {
   return record.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-nlohmann::ordered_json to_json(const Parameters& parameters) {
-  nlohmann::ordered_json values = nlohmann::ordered_json::object();
-  for (const auto& [name, value] : parameters) {
-    std::visit([&, &key = name](const auto& v) { values[key] = v; }, value);
-  }
-  return values;
 }
 
 /// The same instruments must go on: the points of two gyros are no run.
@@ -170,19 +163,22 @@ Result<PlannedProcedure> plan_procedure(const std::string& name, const config::B
 Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
                                                const fs::path& store, Speed speed,
                                                drivers::Operator& person) {
-  const OpenRecord open_log = [&store](Session& session) -> Result<procedures::Recorder*> {
-    auto log = RunLog::open(store);
-    if (!log) return log.error();
-    session.log_ = std::move(*log);
-    return session.log_.get();
+  std::unique_ptr<RunLog> log;
+  const OpenRecord open_log = [&]() -> Result<procedures::Recorder*> {
+    auto opened = RunLog::open(store);
+    if (!opened) return opened.error();
+    log = std::move(*opened);
+    return log.get();
   };
-  return open(std::move(setup), seed, open_log, speed, person);
+  auto session = open(std::move(setup), seed, open_log, speed, person);
+  if (session) (*session)->log_ = std::move(log);
+  return session;
 }
 
 Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
                                                procedures::Recorder& record, Speed speed,
                                                drivers::Operator& person) {
-  const OpenRecord given = [&record](Session&) -> Result<procedures::Recorder*> { return &record; };
+  const OpenRecord given = [&record]() -> Result<procedures::Recorder*> { return &record; };
   return open(std::move(setup), seed, given, speed, person);
 }
 
@@ -201,17 +197,17 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
   } else {
     session->clock_ = std::make_unique<drivers::SteadyClock>(speed.factor);
   }
-  // Before the record, so that a bench which cannot be reached or simulated leaves nothing behind.
   auto transports =
       made.simulated ? simulator::simulate_bench(made.bench, made.scenario, seed, *session->clock_)
                      : drivers::open_ports(made.bench, *session->clock_);
   if (!transports) return transports.error();
-  const auto record = open_record(*session);
-  if (!record) return record.error();
   auto bench = drivers::open_bench(made.bench, std::move(*transports), *session->clock_, person);
   if (!bench) return bench.error();
   session->bench_ = std::move(*bench);
   if (const Status safe = procedures::make_safe(session->bench_); !safe) return safe.error();
+  // After the bench: one that cannot be reached or simulated leaves nothing behind.
+  const auto record = open_record();
+  if (!record) return record.error();
   session->engine_ = std::make_unique<procedures::RunEngine>(made.bench, session->bench_,
                                                              *session->clock_, person, **record);
   return session;

@@ -78,13 +78,19 @@ inline constexpr Speed Speed::kMaximum{std::numeric_limits<double>::infinity()};
 
 class Session {
  public:
-  /// Opens the run log, then the bench, and drives it to its safe state. `person` must outlive the
+  /// Opens the bench, drives it to its safe state, and opens the run log. `person` must outlive the
   /// session. Errors: kStore, and the instruments'.
   static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
                                                const std::filesystem::path& store, Speed speed,
                                                drivers::Operator& person);
 
-  /// The same with a record of the caller's own, which must outlive the session: no run log.
+  /// Makes the record; must outlive the session.
+  using OpenRecord = std::function<Result<procedures::Recorder*>()>;
+  /// The same with a record of the caller's own: no run log. `open_record` is called when the bench
+  /// is in its safe state, so that no store, full or unreadable, keeps it from that.
+  static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
+                                               const OpenRecord& open_record, Speed speed,
+                                               drivers::Operator& person);
   static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
                                                procedures::Recorder& record, Speed speed,
                                                drivers::Operator& person);
@@ -99,12 +105,7 @@ class Session {
   const drivers::StreamStatistics& stream() const { return bench_.gyro->statistics(); }
 
  private:
-  using OpenRecord = std::function<Result<procedures::Recorder*>(Session&)>;
-
   Session(Setup setup, std::uint64_t seed) : setup_(std::move(setup)), seed_(seed) {}
-  static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
-                                               const OpenRecord& open_record, Speed speed,
-                                               drivers::Operator& person);
 
   Setup setup_;
   std::uint64_t seed_;

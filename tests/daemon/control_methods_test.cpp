@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/desk_json.hpp"
+#include "daemon/run_log.hpp"
+#include "daemon/run_log_reader.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -20,10 +22,12 @@ using testing::HasSubstr;
 class ControlMethodsTest : public testing::Test {
  protected:
   ControlMethodsTest() {
-    const auto bench =
-        config::load_bench(tests::source_tree() / "config" / "benches/simulated.json");
-    EXPECT_TRUE(bench) << bench.error().message;
-    methods_ = std::make_unique<ControlMethods>(desk_, *bench);
+    const auto ready = tests::source_tree() / "config";
+    auto setup = load_setup(
+        {(ready / "benches/simulated.json").string(), (ready / "scenarios/clean.json").string()});
+    EXPECT_TRUE(setup) << setup.error().message;
+    setup_ = std::move(*setup);
+    methods_ = std::make_unique<ControlMethods>(desk_, setup_, folder_ / "store.db");
   }
 
   json ask(const std::string& method, const json& params, Caller& caller) {
@@ -47,6 +51,7 @@ class ControlMethodsTest : public testing::Test {
   }
 
   support::TemporaryFolder folder_;
+  daemon::Setup setup_;
   RunDesk desk_;
   std::unique_ptr<ControlMethods> methods_;
   Caller operator_{geteuid(), Role::kOperator, {}};
@@ -166,6 +171,43 @@ TEST_F(ControlMethodsTest, AForcedAbortIsSeenEvenWhenNothingRuns) {
   EXPECT_FALSE(methods_->forced());
   result("abort", {{"force", true}});
   EXPECT_TRUE(methods_->forced());
+}
+
+TEST_F(ControlMethodsTest, AnInterruptedRunIsTakenUpOrGivenUp) {
+  const std::filesystem::path store = folder_ / "store.db";
+  const auto planned = plan_procedure(
+      procedure(R"({"step": "average", "duration_s": 5, "segment": "a"})"), setup_.bench, {});
+  ASSERT_TRUE(planned) << planned.error().message;
+  {
+    const auto log = RunLog::open(store);
+    ASSERT_TRUE(log) << log.error().message;
+    procedures::RunHeader header;
+    header.procedure = "p";
+    header.procedure_json = planned->procedure_json;
+    header.bench = setup_.bench.name;
+    header.bench_json = setup_.bench_json;
+    header.scenario_json = setup_.scenario_json;
+    header.started_at = "2026-01-01T00:00:00Z";
+    ASSERT_TRUE((*log)->begin_run(header, {}));
+  }
+  EXPECT_EQ(refusal("discard", {{"run", 1}}, operator_), RpcCode::kNotFound);
+  desk_.offer({1, "p", "alice", "2026-01-01T00:00:00Z", 0});
+  EXPECT_EQ(result("status")["interrupted"]["run"], 1);
+  EXPECT_EQ(refusal("resume", {{"run", 2}}, operator_), RpcCode::kBadInput);
+  EXPECT_EQ(refusal("resume", {{"run", "1"}}, operator_), RpcCode::kInvalidParams);
+  EXPECT_EQ(refusal("resume", {{"run", 1}}, observer_), RpcCode::kPermission);
+
+  desk_.hold();
+  const json job = result("resume", {{"run", 1}});
+  EXPECT_EQ(job["steps"], 1);
+  EXPECT_EQ(job["held"], false);
+  EXPECT_EQ(desk_.waiting().orders.front().first.takes_up, 1);
+
+  result("discard", {{"run", 1}});
+  EXPECT_TRUE(result("status")["interrupted"].is_null());
+  const auto log = RunLogReader::open(store);
+  EXPECT_EQ((*log)->run(1)->outcome(), "interrupted");
+  EXPECT_TRUE((*log)->run(1)->end) << "nobody offers it again";
 }
 
 }  // namespace

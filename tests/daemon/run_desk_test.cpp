@@ -63,7 +63,7 @@ class RunDeskTest : public testing::Test {
     return std::move(*plan);
   }
   std::uint64_t enqueue(const std::string& text) {
-    const auto queued = desk_.enqueue(planned(text), alice_);
+    const auto queued = desk_.enqueue({}, planned(text), alice_);
     EXPECT_TRUE(std::holds_alternative<std::uint64_t>(queued));
     return std::get<std::uint64_t>(queued);
   }
@@ -181,7 +181,7 @@ TEST_F(RunDeskTest, ClosingAbortsTheRunAndBeginsNoOther) {
   EXPECT_EQ(desk_.view().last_run->outcome, "aborted");
   EXPECT_EQ(record_.headers.size(), 1U);
   EXPECT_TRUE(record_.has_event("abort, by SIGTERM"));
-  const auto late = desk_.enqueue(planned(kMeasures), alice_);
+  const auto late = desk_.enqueue({}, planned(kMeasures), alice_);
   EXPECT_EQ(std::get<RpcError>(late).code, RpcCode::kWrongState);
 }
 
@@ -207,9 +207,9 @@ TEST_F(RunDeskTest, TheQueueHasAnEndAndJobsCanBeTakenOut) {
   const PlannedProcedure procedure = planned(kMeasures);
   std::uint64_t last = 0;
   for (std::size_t i = 0; i < RunDesk::kMostJobs; ++i) {
-    last = std::get<std::uint64_t>(desk_.enqueue(procedure, alice_));
+    last = std::get<std::uint64_t>(desk_.enqueue({}, procedure, alice_));
   }
-  const auto full = desk_.enqueue(procedure, alice_);
+  const auto full = desk_.enqueue({}, procedure, alice_);
   EXPECT_EQ(std::get<RpcError>(full).code, RpcCode::kQueueFull);
   EXPECT_FALSE(desk_.remove(last, alice_));
   EXPECT_EQ(desk_.remove(last, alice_)->code, RpcCode::kNotFound);

@@ -56,7 +56,7 @@ class ServiceManagerTest : public testing::Test {
     PlannedProcedure procedure;
     procedure.plan.procedure = "sweep";
     procedure.plan.steps.resize(4);
-    desk_.enqueue(procedure, {"alice", 1000});
+    desk_.enqueue({}, procedure, {"alice", 1000});
     ASSERT_TRUE(desk_.next_job().has_value());
     advance();
   }

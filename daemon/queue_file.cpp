@@ -1,0 +1,123 @@
+#include "daemon/queue_file.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+
+#include "config/json_file.hpp"
+#include "config/output_file.hpp"
+#include "daemon/parameters_json.hpp"
+#include "daemon/resumption.hpp"
+
+namespace fogbench::daemon {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Kept {
+  Order order;
+  Person by;
+};
+
+std::optional<Kept> kept_from(const nlohmann::json& entry) {
+  if (!entry.is_object() || !entry.contains("by") || !entry["by"].is_string() ||
+      !entry.contains("uid") || !entry["uid"].is_number_unsigned()) {
+    return std::nullopt;
+  }
+  Kept kept;
+  kept.by = {entry["by"].get<std::string>(), entry["uid"].get<std::uint32_t>()};
+  if (const auto run = entry.find("takes_up"); run != entry.end()) {
+    if (!run->is_number_unsigned()) return std::nullopt;
+    kept.order.takes_up = run->get<std::int64_t>();
+    return kept;
+  }
+  if (!entry.contains("procedure") || !entry["procedure"].is_string() || !entry.contains("set")) {
+    return std::nullopt;
+  }
+  auto set = parameters_of(entry["set"]);
+  if (!set) return std::nullopt;
+  kept.order.procedure = entry["procedure"].get<std::string>();
+  kept.order.set = std::move(*set);
+  return kept;
+}
+
+Result<PlannedProcedure> plan(const Order& order, const Setup& setup,
+                              const std::filesystem::path& store) {
+  if (order.takes_up == 0) return plan_procedure(order.procedure, setup.bench, order.set);
+  const auto log = RunLogReader::open(store);
+  if (!log) return log.error();
+  return plan_resumption(**log, order.takes_up, setup);
+}
+
+std::string name_of(const Order& order) {
+  return order.takes_up == 0 ? order.procedure : fmt::format("taking up run {}", order.takes_up);
+}
+
+}  // namespace
+
+Status QueueFile::load(RunDesk& desk, const Setup& setup, const std::filesystem::path& store) {
+  std::error_code error;
+  if (!std::filesystem::exists(path_, error)) return {};
+  const auto document = config::read_json_file(path_);
+  if (!document) return document.error();
+  if (!document->is_array()) {
+    return config::bad_input(path_.string() + ": expected a list of the runs that wait");
+  }
+  for (std::size_t i = 0; i < document->size(); ++i) {
+    const auto kept = kept_from((*document)[i]);
+    if (!kept) {
+      return config::bad_input(fmt::format(
+          "{}: /{}: expected procedure, set, by and uid of a run that waits", path_.string(), i));
+    }
+    auto planned = plan(kept->order, setup, store);
+    if (!planned) {
+      spdlog::warn("{}, asked for by {}, is no longer in the queue: {}", name_of(kept->order),
+                   kept->by.name, planned.error().message);
+      continue;
+    }
+    (void)desk.enqueue(kept->order, std::move(*planned), kept->by);
+    desk.hold();
+  }
+  return {};
+}
+
+void QueueFile::update(const RunDesk& desk) {
+  const RunDesk::Waiting waiting = desk.waiting();
+  if (waiting.changes == written_) return;
+  const Status written = write(waiting);
+  if (written) {
+    written_ = waiting.changes;
+  } else if (!failing_) {
+    spdlog::warn("the queue would not outlive the daemon: {}", written.error().message);
+  }
+  failing_ = !written;
+}
+
+Status QueueFile::write(const RunDesk::Waiting& waiting) const {
+  std::error_code error;
+  if (waiting.orders.empty()) {
+    std::filesystem::remove(path_, error);
+    if (!error) return {};
+    return config::bad_input(fmt::format("{}: {}", path_.string(), error.message()));
+  }
+  ordered_json list = ordered_json::array();
+  for (const auto& [order, by] : waiting.orders) {
+    ordered_json entry;
+    if (order.takes_up != 0) {
+      entry["takes_up"] = order.takes_up;
+    } else {
+      entry["procedure"] = order.procedure;
+      entry["set"] = to_json(order.set);
+    }
+    entry["by"] = by.name;
+    entry["uid"] = by.uid;
+    list.push_back(std::move(entry));
+  }
+  constexpr auto kReplace = ordered_json::error_handler_t::replace;
+  return config::write_file(path_, list.dump(2, ' ', false, kReplace) + "\n");
+}
+
+}  // namespace fogbench::daemon

@@ -1,0 +1,32 @@
+#pragma once
+// The queue, kept in a file beside the run log so that it outlives the daemon: a night's runs are
+// not forgotten by a power cut. What it holds is planned anew, and held, at the next start.
+
+#include <filesystem>
+
+#include "config/result.hpp"
+#include "daemon/run_desk.hpp"
+
+namespace fogbench::daemon {
+
+class QueueFile {
+ public:
+  explicit QueueFile(const std::filesystem::path& store) : path_(store.string() + ".queue") {}
+
+  /// Puts what is in the file into the desk's queue, which it holds. What can no longer be planned
+  /// is left out, with its reason in the log. kBadInput when the file is none of ours.
+  Status load(RunDesk& desk, const Setup& setup, const std::filesystem::path& store);
+
+  /// Writes when the queue has changed since the last time; no file is an empty queue. A failure is
+  /// in the log once, and tried again.
+  void update(const RunDesk& desk);
+
+ private:
+  Status write(const RunDesk::Waiting& waiting) const;
+
+  std::filesystem::path path_;
+  std::uint64_t written_ = 0;
+  bool failing_ = false;
+};
+
+}  // namespace fogbench::daemon

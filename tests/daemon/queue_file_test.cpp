@@ -1,0 +1,115 @@
+#include "daemon/queue_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/run_log.hpp"
+#include "tests/support/source_tree.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fogbench::daemon {
+namespace {
+
+class QueueFileTest : public testing::Test {
+ protected:
+  QueueFileTest() {
+    const auto ready = tests::source_tree() / "config";
+    auto setup = load_setup(
+        {(ready / "benches/simulated.json").string(), (ready / "scenarios/clean.json").string()});
+    EXPECT_TRUE(setup) << setup.error().message;
+    setup_ = std::move(*setup);
+    EXPECT_TRUE(RunLog::open(store_));
+  }
+
+  void enqueue(RunDesk& desk, const std::string& procedure, const Parameters& set) {
+    auto planned = plan_procedure(procedure, setup_.bench, set);
+    ASSERT_TRUE(planned) << planned.error().message;
+    desk.enqueue({procedure, set}, std::move(*planned), {"alice", 1000});
+  }
+  std::string ready(const std::string& name) const {
+    return (tests::source_tree() / "config/procedures" / (name + ".json")).string();
+  }
+  Status load(RunDesk& desk) { return QueueFile(store_).load(desk, setup_, store_); }
+
+  support::TemporaryFolder folder_;
+  std::filesystem::path store_{folder_ / "store.db"}, file_{folder_ / "store.db.queue"};
+  daemon::Setup setup_;
+};
+
+TEST_F(QueueFileTest, WhatWaitsOutlivesTheDaemonAndIsHeld) {
+  RunDesk desk;
+  enqueue(desk, ready("coil-sweep"), {{"average_s", 5.0}, {"levels_ut", std::vector{0.0, 300.0}}});
+  enqueue(desk, ready("static-record"), {});
+  QueueFile(store_).update(desk);
+
+  RunDesk next;
+  ASSERT_TRUE(load(next));
+  const auto waiting = next.waiting().orders;
+  ASSERT_EQ(waiting.size(), 2U);
+  EXPECT_EQ(waiting[0].first.procedure, ready("coil-sweep"));
+  EXPECT_EQ(waiting[0].first.set, desk.waiting().orders[0].first.set);
+  EXPECT_EQ(waiting[1].second.name, "alice");
+  EXPECT_EQ(waiting[1].second.uid, 1000U);
+  EXPECT_TRUE(next.view().held) << "a bench that comes back waits for a person";
+}
+
+TEST_F(QueueFileTest, AnEmptyQueueLeavesNoFile) {
+  RunDesk desk;
+  QueueFile file(store_);
+  enqueue(desk, ready("static-record"), {});
+  file.update(desk);
+  EXPECT_TRUE(std::filesystem::exists(file_));
+  EXPECT_FALSE(desk.remove(1, {"alice", 1000}));
+  file.update(desk);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  RunDesk next;
+  EXPECT_TRUE(load(next));
+  EXPECT_TRUE(next.waiting().orders.empty());
+}
+
+TEST_F(QueueFileTest, AJobThatWasTakenStaysUntilItsRunIsOnRecord) {
+  RunDesk desk;
+  QueueFile file(store_);
+  enqueue(desk, ready("static-record"), {});
+  ASSERT_TRUE(desk.next_job());
+  file.update(desk);
+  RunDesk next;
+  ASSERT_TRUE(load(next));
+  EXPECT_EQ(next.waiting().orders.size(), 1U);
+  desk.run_begun(1);
+  file.update(desk);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST_F(QueueFileTest, WhatCanNoLongerBePlannedIsLeftOut) {
+  RunDesk desk;
+  const auto gone = folder_.file("gone.json", R"({"name": "gone", "steps": [
+      {"step": "average", "duration_s": 1, "segment": "a"}]})");
+  enqueue(desk, gone.string(), {});
+  enqueue(desk, ready("static-record"), {});
+  QueueFile(store_).update(desk);
+  std::filesystem::remove(gone);
+  RunDesk next;
+  ASSERT_TRUE(load(next));
+  ASSERT_EQ(next.waiting().orders.size(), 1U);
+  EXPECT_EQ(next.waiting().orders[0].first.procedure, ready("static-record"));
+}
+
+TEST_F(QueueFileTest, AFileThatIsNoneOfOursIsRefusedInOneLine) {
+  for (const auto& [text, says] :
+       {std::pair{"{", "store.db.queue"}, std::pair{"{}", "expected a list"},
+        std::pair{R"([{"by": "a", "uid": 1}])", "/0: expected procedure"},
+        std::pair{R"([{"by": 1, "uid": 1}])", "/0: expected procedure"},
+        std::pair{R"([{"takes_up": -1, "by": "a", "uid": 1}])", "/0"}}) {
+    folder_.file("store.db.queue", text);
+    RunDesk desk;
+    const Status loaded = load(desk);
+    ASSERT_FALSE(loaded) << text;
+    EXPECT_EQ(loaded.error().code, ErrorCode::kBadInput);
+    EXPECT_NE(loaded.error().message.find(says), std::string::npos) << loaded.error().message;
+  }
+}
+
+}  // namespace
+}  // namespace fogbench::daemon
