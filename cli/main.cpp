@@ -9,6 +9,7 @@
 
 #include "cli/command.hpp"
 #include "cli/output.hpp"
+#include "daemon/manual.hpp"
 
 namespace {
 
@@ -20,6 +21,24 @@ constexpr auto kFooter =
     "Exit status: 0 done, 1 the answer is no, 2 usage, 3 bad input, 4 bench, daemon or run log "
     "failed.\n"
     "`fogbench COMMAND --help` shows a command's options and examples.";
+
+fogbench::daemon::ManualText manual_text() {
+  return {
+      1,
+      "acceptance tests of fiber-optic gyros, and their error model",
+      "Plans and rehearses acceptance procedures on a simulated bench, reads what was measured, "
+      "fits error models to it, compares and diagnoses; and tells a fogbenchd that owns a bench "
+      "what to run. Results go to standard output, progress and messages to standard error.",
+      {{"FOGBENCH_STORE", "The run log to use, unless --store is given."},
+       {"FOGBENCH_SOCKET", "The daemon's control socket, unless --socket is given."},
+       {"FOGBENCH_CONFIG_DIR", "Where the ready files are, instead of beside the program."}},
+      {{"~/.local/state/fogbench/fogbench.db", "The user's run log."},
+       {"/var/lib/fogbench/fogbench.db", "The service's run log, for the group fogbench."},
+       {"/run/fogbench/control.sock", "The service's control socket."},
+       {"/usr/share/fogbench/config", "The ready benches, procedures, models and scenarios."},
+       {"/usr/share/doc/fogbench", "The formats of the configuration and of the run log."}},
+      "fogbenchd(8)"};
+}
 
 void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_plan(app, action);
@@ -60,6 +79,11 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "fogbench " FOGBENCH_VERSION);
   fogbench::cli::Action action;
   add_commands(app, action);
+  fogbench::daemon::add_manual_options(app);
+  if (const auto manual = fogbench::daemon::asked_manual(argc, argv, app, manual_text())) {
+    if (std::fputs(manual->c_str(), stdout) < 0 || std::fflush(stdout) != 0) return cannot_print();
+    return static_cast<int>(ExitStatus::kDone);
+  }
 
   try {
     app.parse(argc, argv);

@@ -30,6 +30,7 @@ class Process {
   ~Process();
 
   void signal(int number) const;
+  pid_t id() const { return pid_; }
   /// Waits until standard output holds `text`; false when the program ended or time ran out.
   bool wait_for_output(const std::string& text, std::chrono::seconds timeout);
   /// What it has printed by then.
