@@ -124,6 +124,8 @@ ordered_json to_json(const daemon::StoredRun& run) {
                     {"frame_rate_hz", header.frame_rate_hz},
                     {"reference_rate_deg_per_h", header.reference_rate_deg_per_h},
                     {"frames_stored", run.frames_stored}};
+  if (header.continues) json["takes_up"] = header.continues->run;
+  if (run.taken_up_by != 0) json["taken_up_by"] = run.taken_up_by;
   if (!run.end) return json;
   const drivers::StreamStatistics& stream = run.end->stream;
   json["reason"] = run.end->reason;
@@ -201,6 +203,9 @@ std::string heading(const daemon::StoredRun& run) {
   } else {
     line("ended", "never: interrupted, or still under way");
   }
+  if (header.continues)
+    line("takes up", fmt::format("run {}; the results are of both", header.continues->run));
+  if (run.taken_up_by != 0) line("taken up by", fmt::format("run {}", run.taken_up_by));
   line("gyro", header.gyro_serial_number);
   line("seed", header.seed ? std::to_string(*header.seed) : "");
   line("software", "fogbench " + header.software_version);

@@ -8,6 +8,7 @@ Result<std::int64_t> DeskRecorder::begin_run(
   auto run = record_.begin_run(header, instruments);
   if (!run) return run;
   time_s_ = 0.0;
+  notes_.clear();
   desk_.run_begun(*run);
   return run;
 }
@@ -63,9 +64,12 @@ Status DeskRecorder::end_run(const procedures::RunEnd& end) {
 }
 
 Status DeskRecorder::record_notes() {
-  for (const Note& note : desk_.take_notes()) {
-    const Status recorded = event(time_s_, "info", note.message, note.data_json);
+  for (Note& note : desk_.take_notes()) notes_.push_back(std::move(note));
+  while (!notes_.empty()) {
+    const Status recorded =
+        event(time_s_, "info", notes_.front().message, notes_.front().data_json);
     if (!recorded) return recorded;
+    notes_.erase(notes_.begin());
   }
   return {};
 }

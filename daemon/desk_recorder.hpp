@@ -35,7 +35,8 @@ class DeskRecorder final : public procedures::Recorder {
 
   procedures::Recorder& record_;
   RunDesk& desk_;
-  double time_s_ = 0.0;  ///< of the run's last record
+  std::vector<Note> notes_;  ///< not on record yet
+  double time_s_ = 0.0;      ///< of the run's last record
 };
 
 }  // namespace fogbench::daemon

@@ -83,6 +83,9 @@ Status RunLog::prepare() {
 
 template <class Write>
 Status RunLog::commit(Sync sync, Write write) {
+  if (sync == Sync::kFull) {
+    if (const Status there = database_->check_in_place(); !there) return there;
+  }
   if (sync != sync_) {
     const Status ok = database_->execute(sync == Sync::kFull ? "PRAGMA synchronous = FULL"
                                                              : "PRAGMA synchronous = NORMAL");

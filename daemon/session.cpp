@@ -210,6 +210,7 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
   if (!record) return record.error();
   session->engine_ = std::make_unique<procedures::RunEngine>(made.bench, session->bench_,
                                                              *session->clock_, person, **record);
+  if (speed != Speed::kMaximum) session->engine_->wait_for_record();
   return session;
 }
 

@@ -220,6 +220,15 @@ std::int64_t Database::last_insert_id() const {
   return sqlite3_last_insert_rowid(handle_);
 }
 
+Status Database::check_in_place() {
+  int moved = 0;
+  if (sqlite3_file_control(handle_, "main", SQLITE_FCNTL_HAS_MOVED, &moved) != SQLITE_OK ||
+      moved == 0) {
+    return {};
+  }
+  return Error{ErrorCode::kStore, path_ + ": the file was removed, moved or replaced"};
+}
+
 Result<Transaction> Transaction::begin(Database& database) {
   // IMMEDIATE: waits for another writer now, not in the middle.
   if (const Status begun = database.execute("BEGIN IMMEDIATE"); !begun) return begun.error();

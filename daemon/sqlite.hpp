@@ -76,6 +76,9 @@ class Database {
   /// The first column of the first row of `sql`; kStore when there is none.
   Result<std::int64_t> integer(const std::string& sql);
   std::int64_t last_insert_id() const;
+  /// kStore when the file was removed, moved or replaced since it was opened: what is written then
+  /// would be in a file that nobody finds.
+  Status check_in_place();
 
  private:
   Database(sqlite3* handle, std::string path);

@@ -73,8 +73,10 @@ Status BenchWatch::drain() {
   if (!frames_.index.empty()) {
     next_frame_ = frames_.index.back() + 1;
     gyro_.last_taken = clock_.now();
-    const auto recorded = recorder_.gyro_samples(frames_);
-    if (!recorded) return recorded;
+    if (!kept_from_record_) {
+      const auto recorded = recorder_.gyro_samples(frames_);
+      if (!recorded) return recorded;
+    }
   }
   return note(gyro_, outcome);
 }
@@ -109,6 +111,7 @@ Status BenchWatch::read_slow_instruments() {
   has_new_row_ = true;
   recent_.push_back(row_);
   while (recent_.front().time_s < row_.time_s - kRecentS) recent_.pop_front();
+  if (kept_from_record_) return {};
   return recorder_.monitor(row_);
 }
 
@@ -168,6 +171,7 @@ Status BenchWatch::check_temperature() const {
 
 Status BenchWatch::event(const std::string& severity, const std::string& message,
                          const std::string& data_json) {
+  if (kept_from_record_) return {};
   return recorder_.event(now_s(), severity, message, data_json);
 }
 

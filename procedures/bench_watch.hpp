@@ -72,6 +72,8 @@ class BenchWatch {
 
   /// Whether the coils' outputs are on: an instrument that is unplugged then interrupts.
   void guard_field(bool on) { field_guarded_ = on; }
+  /// While the record cannot be written nothing is handed to it: what is read then is lost to it.
+  void keep_from_record(bool kept) { kept_from_record_ = kept; }
   /// False while an instrument's readings are missing.
   bool all_answer() const;
 
@@ -107,6 +109,7 @@ class BenchWatch {
   Instant next_reading_{};
   config::Degree azimuth_{0.0};
   bool field_guarded_ = false;
+  bool kept_from_record_ = false;
   Outage gyro_{"gyro", {}}, thermostat_{"thermostat", {}}, magnetometer_{"magnetometer", {}},
       coil_horizontal_{"coil_horizontal", {}}, coil_vertical_{"coil_vertical", {}};
 };

@@ -47,12 +47,18 @@ class RunEngine::Run {
 
  private:
   Status execute_steps();
+  /// The next step, or what comes before it.
+  Status advance();
   Result<StepResult> run_step(std::size_t index);
   Status pause_if_asked();
   /// An instrument was unplugged: coils to 0 A, read back, until all are there again; then the step
   /// or its block begins anew. An error when that takes too long or happens too often.
   Status interrupt(const std::string& reason);
   Status await_return(const std::string& reason);
+  /// The record cannot be written: coils to 0 A until it can.
+  Status await_record(const Error& fault);
+  /// What an interruption leads to once it is over: the block's first step, or the step again.
+  Status begin_again(const std::string& reason);
   /// Back to the block's first step, or an error when it has been tried often enough.
   Status restart_block(const std::string& reason);
   Status after_tick();
@@ -90,34 +96,37 @@ Status RunEngine::Run::execute_steps() {
   const auto started = session_.start();
   if (!started) return started;
   while (step_ < plan_.steps.size()) {
-    const int block = plan_.steps[step_].block;
-    if (block == 0 || block != block_) {
-      const auto paused = pause_if_asked();
-      if (!paused) return paused;
-      block_ = block;
-      block_tries_ = 1;
-      block_points_ = 0;
+    Status advanced = advance();
+    while (!advanced && advanced.error().code == ErrorCode::kStore && engine_.waits_for_record_) {
+      advanced = await_record(advanced.error());
+      if (advanced) advanced = begin_again("the run log could not be written");
     }
-    const auto result = run_step(step_);
-    if (!result && result.error().code == ErrorCode::kUnplugged) {
-      const auto interrupted = interrupt(result.error().message);
-      if (!interrupted) return interrupted;
-      continue;
-    }
-    if (!result) {
-      if (result.error().code == ErrorCode::kStore) return result.error();
-      return Error{result.error().code,
-                   fmt::format("step {}, {}: {}", plan_.steps[step_].path, plan_.steps[step_].says,
-                               result.error().message)};
-    }
-    if (result->voided.empty()) {
-      ++step_;
-      step_tries_ = 0;
-      continue;
-    }
-    const auto restarted = restart_block(result->voided);
-    if (!restarted) return restarted;
+    if (!advanced) return advanced;
   }
+  return {};
+}
+
+Status RunEngine::Run::advance() {
+  const int block = plan_.steps[step_].block;
+  if (block == 0 || block != block_) {
+    const auto paused = pause_if_asked();
+    if (!paused) return paused;
+    block_ = block;
+    block_tries_ = 1;
+    block_points_ = 0;
+  }
+  const auto result = run_step(step_);
+  if (!result && result.error().code == ErrorCode::kUnplugged) {
+    return interrupt(result.error().message);
+  }
+  if (!result) {
+    if (result.error().code == ErrorCode::kStore) return result.error();
+    return Error{result.error().code, fmt::format("step {}, {}: {}", plan_.steps[step_].path,
+                                                  plan_.steps[step_].says, result.error().message)};
+  }
+  if (!result->voided.empty()) return restart_block(result->voided);
+  ++step_;
+  step_tries_ = 0;
   return {};
 }
 
@@ -140,15 +149,18 @@ Result<StepResult> RunEngine::Run::run_step(std::size_t index) {
 
 Status RunEngine::Run::pause_if_asked() {
   if (!engine_.pause_requested_) return {};
-  enter(RunEvent::kPause);
   says_ = "paused before: " + plan_.steps[step_].says;
   step_started_ = engine_.clock_.now();
-  auto noted = watch_.event("info", says_);
+  const auto noted = watch_.event("info", says_);
   if (!noted) return noted;
+  enter(RunEvent::kPause);
   while (engine_.pause_requested_) {
     auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
     if (!ticked && ticked.error().code == ErrorCode::kUnplugged) {
       ticked = await_return(ticked.error().message);
+    }
+    while (!ticked && ticked.error().code == ErrorCode::kStore && engine_.waits_for_record_) {
+      ticked = await_record(ticked.error());
     }
     if (!ticked) return ticked;
   }
@@ -166,11 +178,16 @@ Status RunEngine::Run::interrupt(const std::string& reason) {
     return Error{back.error().code,
                  fmt::format("step {}, {}: {}", step.path, step.says, back.error().message)};
   }
-  if (step.block != 0) return restart_block(reason);
-  if (++step_tries_ == RunSession::kTries) {
+  if (step.block == 0 && ++step_tries_ == RunSession::kTries) {
     return Error{ErrorCode::kDevice, fmt::format("step {}, {}: interrupted {} times: {}", step.path,
                                                  step.says, step_tries_, reason)};
   }
+  return begin_again(reason);
+}
+
+Status RunEngine::Run::begin_again(const std::string& reason) {
+  const PlannedStep& step = plan_.steps[step_];
+  if (step.block != 0) return restart_block(reason);
   return watch_.event("warning", fmt::format("step {} begins again: {}", step.path, reason));
 }
 
@@ -202,6 +219,40 @@ Status RunEngine::Run::await_return(const std::string& reason) {
                    fmt::format("still not back after {}: {}",
                                duration_text(engine_.config_.limits.absence_maximum),
                                off ? reason : off.error().message)};
+    }
+  }
+}
+
+Status RunEngine::Run::await_record(const Error& fault) {
+  const auto begun = engine_.clock_.now();
+  const std::string interrupted = std::exchange(says_, "waiting for the run log: " + fault.message);
+  watch_.keep_from_record(true);
+  for (;;) {
+    const auto off = session_.switch_off();
+    const auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
+    if (!ticked && ticked.error().code != ErrorCode::kUnplugged) return ticked;
+    const Seconds waited{to_seconds(engine_.clock_.now() - begun)};
+    if (off && ticked) {
+      const auto noted = engine_.recorder_.event(
+          watch_.now_s(), "warning",
+          fmt::format("{}; nothing was recorded for {:.1f} s, with the coils at 0 A", fault.message,
+                      waited.count()),
+          {});
+      if (noted) {
+        watch_.keep_from_record(false);
+        const auto restored = session_.restore(plan_.steps[step_].block == 0);
+        if (restored || restored.error().code != ErrorCode::kUnplugged) {
+          says_ = interrupted;
+          return restored;
+        }
+        watch_.keep_from_record(true);
+      }
+    }
+    if (waited > engine_.config_.limits.absence_maximum) {
+      return Error{
+          ErrorCode::kDevice,
+          fmt::format("the run log could not be written for {}: {}",
+                      duration_text(engine_.config_.limits.absence_maximum), fault.message)};
     }
   }
 }
@@ -291,7 +342,15 @@ Result<RunEnd> RunEngine::Run::finish(const Status& outcome) {
       end.outcome == RunOutcome::kCompleted
           ? RunEvent::kSafeDone
           : (end.outcome == RunOutcome::kAborted ? RunEvent::kSafeAborted : RunEvent::kSafeFailed));
-  const auto recorded = engine_.recorder_.end_run(end);
+  auto recorded = engine_.recorder_.end_run(end);
+  // The bench is safe: what remains is to say so.
+  const auto begun = engine_.clock_.now();
+  const auto patience = drivers::from_seconds(engine_.config_.limits.absence_maximum.count());
+  while (!recorded && engine_.waits_for_record_ && !engine_.abort_requested_ &&
+         engine_.clock_.now() - begun < patience) {
+    engine_.clock_.sleep_for(BenchWatch::kPeriod);
+    recorded = engine_.recorder_.end_run(end);
+  }
   try_to_report(end.reason);
   if (!outcome && outcome.error().code == ErrorCode::kStore) {
     return Error{ErrorCode::kStore, end.reason + (safe ? "; the bench is in its safe state" : "")};

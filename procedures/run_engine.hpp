@@ -60,6 +60,11 @@ class RunEngine {
   /// Called when the point is on disk, never before.
   void on_point(std::function<void(const Point&)> observer) { point_ = std::move(observer); }
 
+  /// A record that cannot be written (a full disk, another program's lock) is waited for as an
+  /// instrument is: coils at 0 A, at most for the bench's absence_maximum, then the step or its
+  /// block begins anew. Without this it ends the run: on a virtual clock nobody makes room in time.
+  void wait_for_record() { waits_for_record_ = true; }
+
   /// Ends in the safe state whatever happens. An error is returned only when the run could not
   /// be recorded (kStore, the bench is made safe all the same) or begun (nothing was commanded); a
   /// failed or aborted run is a RunSummary that says so. An engine may run again after an end.
@@ -91,6 +96,7 @@ class RunEngine {
   std::function<void(const Progress&)> progress_;
   std::function<void(const Point&)> point_;
   RunState state_ = RunState::kIdle;
+  bool waits_for_record_ = false;
   Run* run_ = nullptr;  ///< the one under way
   std::atomic<bool> abort_requested_{false};
   std::atomic<bool> pause_requested_{false};
