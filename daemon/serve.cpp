@@ -53,6 +53,7 @@ int take_signals() {
   if (hangup.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);  // nohup asked to survive it
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a full disk
   return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 

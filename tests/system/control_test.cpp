@@ -9,10 +9,9 @@
 
 #include <chrono>
 #include <csignal>
-#include <functional>
 #include <thread>
 
-#include "tests/system/fogbench.hpp"
+#include "tests/system/control_fixture.hpp"
 
 namespace fogbench::system_tests {
 namespace {
@@ -21,71 +20,6 @@ using namespace std::chrono_literals;
 
 constexpr gid_t kOperators = 1;     // group "daemon" of every Debian
 constexpr uid_t kStranger = 65534;  // nobody
-
-class ControlTest : public FogbenchTest {
- protected:
-  ControlTest() {
-    // Other users must reach the socket, and the program: a developer's home may be closed to them.
-    chmod(folder_.path().c_str(), 0755);
-    setenv("FOGBENCH_SOCKET", socket().c_str(), 1);
-  }
-  ~ControlTest() override { unsetenv("FOGBENCH_SOCKET"); }
-
-  std::string socket() const { return (folder_ / "control.sock").string(); }
-
-  std::vector<std::string> daemon_command(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments{"--bench", "simulated", "--store", store(), "--speed", "20"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return command(arguments, "fogbenchd");
-  }
-  /// Serving when it returns.
-  std::unique_ptr<Process> serve(const std::vector<std::string>& more = {},
-                                 const Process::Setup& setup = {}) const {
-    auto daemon = std::make_unique<Process>(daemon_command(more), setup);
-    for (int i = 0; i < 300; ++i) {
-      if (fogbench({"status"}).status == 0) return daemon;
-      std::this_thread::sleep_for(100ms);
-    }
-    ADD_FAILURE() << "the daemon does not serve: " << daemon->wait(1s).err;
-    return daemon;
-  }
-  static nlohmann::json status() { return json({"status", "--json"}); }
-  /// The first status of which `holds` is true.
-  static nlohmann::json wait_until(const std::function<bool(const nlohmann::json&)>& holds) {
-    nlohmann::json now;
-    for (int i = 0; i < 600; ++i) {
-      now = status();
-      if (holds(now)) return now;
-      std::this_thread::sleep_for(50ms);
-    }
-    ADD_FAILURE() << "it never came to that: " << now;
-    return now;
-  }
-  static nlohmann::json wait_for_prompt() {
-    return wait_until([](const nlohmann::json& now) { return now["prompt"].is_object(); });
-  }
-
-  /// A procedure of `averages` points, 2 s of the bench each, after a prompt where one is given.
-  std::string procedure(const std::string& name, int averages,
-                        const std::string& prompt = "") const {
-    std::string steps = R"({"step": "set_temperature", "mode": "off"})";
-    if (!prompt.empty()) steps += R"(, {"step": "prompt", "text": ")" + prompt + "\"}";
-    for (int i = 0; i < averages; ++i) {
-      steps += R"(, {"step": "average", "duration_s": 2, "segment": "a"})";
-    }
-    return folder_.file(name + ".json", R"({"name": ")" + name + R"(", "steps": [)" + steps + "]}")
-        .string();
-  }
-  nlohmann::json stored(const std::string& run) const {
-    return json({"show", run, "--store", store(), "--json"});
-  }
-  static bool has_event(const nlohmann::json& run, const std::string& text) {
-    for (const auto& event : run["events"]) {
-      if (event["message"].get<std::string>().find(text) != std::string::npos) return true;
-    }
-    return false;
-  }
-};
 
 TEST_F(ControlTest, RunsWhatIsQueuedAndSaysHowItEnded) {
   const auto daemon = serve();
