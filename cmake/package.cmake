@@ -21,6 +21,7 @@ install(FILES config/systemd/fogbenchd.service config/systemd/fogbenchd.socket
 install(FILES config/systemd/fogbench.sysusers DESTINATION lib/sysusers.d RENAME fogbench.conf)
 install(FILES config/udev/60-fogbench.rules DESTINATION lib/udev/rules.d)
 install(FILES cmake/debian/fogbenchd.default DESTINATION /etc/default RENAME fogbenchd)
+install(DIRECTORY DESTINATION /etc/fogbench)
 
 # The manual pages and the completions are what the programs print, so that they cannot differ.
 install(CODE [[

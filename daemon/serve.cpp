@@ -152,6 +152,7 @@ void serve_clients(ControlServer& server, const ControlMethods& methods, RunDesk
       asked_to_end = true;
       spdlog::info("{}: stopping", signal);
       desk.close({signal, static_cast<std::uint32_t>(geteuid())});
+      report();
     }
     if (methods.forced()) end_at_once("a forced abort");
     if (!desk.aborting()) {

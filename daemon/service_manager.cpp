@@ -51,13 +51,14 @@ void ServiceManager::ready() {
 
 void ServiceManager::report(const RunDesk& desk) {
   const auto now = clock_.now();
-  if (now < due_) return;
-  due_ = now + period_;
   const DeskView view = desk.view();
+  // At once: a bench without a run is left within the same moment.
   if (view.closing && !stopping_) {
     stopping_ = true;
     tell("STOPPING=1");
   }
+  if (now < due_) return;
+  due_ = now + period_;
   if (const std::string says = service_status(view); says != said_) {
     said_ = says;
     tell("STATUS=" + says);

@@ -2,6 +2,7 @@
 // against --help, an installed tree, and systemd's end of the notification socket.
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <sys/ptrace.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -10,7 +11,7 @@
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
+#include <iterator>
 #include <regex>
 #include <set>
 #include <thread>
@@ -42,79 +43,108 @@ class ServiceTest : public FogbenchTest {
     }
     return words;
   }
-  /// What bash offers after this line, by the program's own completion.
-  std::set<std::string> offered(const std::string& program, const std::string& line) const {
-    const std::string script = fmt::format(
-        "PATH={0}:$PATH; source <({1} --completion) && COMP_WORDS=({1} {2}) && "
-        "COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)) && _{1} && "
-        "printf '%s\\n' \"${{COMPREPLY[@]}}\"",
-        tests::build_tree().string(), program, line);
+  /// What bash offers after each of these lines, by the program's own completion.
+  static std::vector<std::set<std::string>> offered(const std::string& program,
+                                                    const std::vector<std::string>& lines) {
+    std::string script = fmt::format("PATH={0}:$PATH; source <({1} --completion) || exit\n",
+                                     tests::build_tree().string(), program);
+    for (const std::string& line : lines) {
+      script += fmt::format(
+          "COMP_WORDS=({0} {1}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _{0}; "
+          "printf '%s ' \"${{COMPREPLY[@]}}\"; echo\n",
+          program, line);
+    }
     const Finished done = support::run({"/bin/bash", "-c", script});
     EXPECT_EQ(done.status, 0) << done.err;
-    EXPECT_EQ(done.err, "") << line;
-    std::set<std::string> words;
-    std::istringstream lines(done.out);
-    for (std::string word; std::getline(lines, word);) words.insert(word);
-    return words;
-  }
-  /// Holds the page and the completion of a command, and of those below it, to its --help.
-  void expect_described(const std::string& program, const std::string& name,
-                        const std::string& page) {
-    std::vector<std::string> words;
-    std::istringstream parts(name);
-    for (std::string part; parts >> part;) words.push_back(part);
-    words.emplace_back("--help");
-    const Finished help = support::run(command(words, program));
-    ASSERT_EQ(help.status, 0) << name;
-    // Up to the next command's heading.
-    std::string section = page;
-    if (!name.empty()) {
-      std::string heading = fmt::format(".SS \"{} {}\"", program, name);
-      heading = std::regex_replace(heading, std::regex("-"), "\\-");
-      const std::size_t begin = page.find(heading);
-      ASSERT_NE(begin, std::string::npos) << heading;
-      section = page.substr(begin, page.find("\n.S", begin) - begin);
+    EXPECT_EQ(done.err, "");
+    std::vector<std::set<std::string>> all;
+    std::istringstream answers(done.out);
+    for (std::string answer; std::getline(answers, answer);) {
+      std::istringstream words(answer);
+      all.emplace_back(std::istream_iterator<std::string>(words),
+                       std::istream_iterator<std::string>());
     }
-    const auto options = listed(help.out, "Options:");
-    EXPECT_TRUE(options.contains("--help")) << help.out;
-    std::set<std::string> offers = offered(program, name + " -");
-    for (const std::string& option : options) {
-      EXPECT_TRUE(offers.contains(option)) << program << " " << name << " " << option;
-      const std::string roff = std::regex_replace(option, std::regex("-"), "\\-");
-      EXPECT_NE(section.find(roff), std::string::npos) << program << " " << name << " " << option;
-    }
-    const auto commands = listed(help.out, "Subcommands:");
-    if (!commands.empty()) offers = offered(program, name + " ''");
-    for (const std::string& below : commands) {
-      EXPECT_TRUE(offers.contains(below)) << name << " " << below;
-      expect_described(program, name.empty() ? below : name + " " + below, page);
-      ++described_;
-    }
+    EXPECT_EQ(all.size(), lines.size());
+    all.resize(lines.size());
+    return all;
   }
 
-  int described_ = 0;
+  struct Command {
+    std::string name;  ///< empty for the program itself
+    std::set<std::string> options, commands;
+  };
+  /// What --help says of a command and of those below it.
+  static void ask(const std::string& program, const std::string& name,
+                  std::vector<Command>& commands) {
+    std::istringstream parts(name);
+    std::vector<std::string> words(std::istream_iterator<std::string>(parts), {});
+    words.emplace_back("--help");
+    const Finished help = support::run(command(words, program));
+    EXPECT_EQ(help.status, 0) << name;
+    const Command asked{name, listed(help.out, "Options:"), listed(help.out, "Subcommands:")};
+    EXPECT_TRUE(asked.options.contains("--help")) << help.out;
+    commands.push_back(asked);
+    for (const std::string& below : asked.commands) {
+      ask(program, name.empty() ? below : name + " " + below, commands);
+    }
+  }
+  static std::string roff(const std::string& text) {
+    return std::regex_replace(text, std::regex("-"), "\\-");
+  }
 };
 
 TEST_F(ServiceTest, ManualAndCompletionLeaveNothingOut) {
+  std::size_t described = 0;
   for (const std::string program : {"fogbench", "fogbenchd"}) {
     const Finished page = support::run(command({"--manual"}, program));
     ASSERT_EQ(page.status, 0) << page.err;
-    expect_described(program, "", page.out);
+    std::vector<Command> commands;
+    ask(program, "", commands);
+    described += commands.size();
+    std::vector<std::string> lines;
+    for (const Command& one : commands) {
+      lines.push_back(one.name + " -");
+      lines.push_back(one.name + " ''");
+    }
+    const auto offers = offered(program, lines);
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      const Command& one = commands[i];
+      EXPECT_THAT(offers[2 * i], testing::IsSupersetOf(one.options)) << program << " " << one.name;
+      EXPECT_THAT(offers[2 * i + 1], testing::IsSupersetOf(one.commands)) << one.name;
+      // Up to the next command's heading.
+      std::string section = page.out;
+      if (!one.name.empty()) {
+        const std::size_t begin = page.out.find(roff(fmt::format(".SS \"fogbench {}\"", one.name)));
+        ASSERT_NE(begin, std::string::npos) << one.name;
+        section = page.out.substr(begin, page.out.find("\n.S", begin) - begin);
+      }
+      for (const std::string& option : one.options) {
+        EXPECT_THAT(section, testing::HasSubstr(roff(option))) << program << " " << one.name;
+      }
+    }
   }
-  EXPECT_GE(described_, 26) << "the commands were not found in --help";
+  EXPECT_GE(described, 28U) << "the commands were not found in --help";
   EXPECT_EQ(fogbench({"--manual", "--completion"}).status, 2);
   EXPECT_EQ(fogbench({"plan", "coil-sweep", "--manual"}).status, 2);
 }
 
 TEST_F(ServiceTest, CompletionOffersReadyFilesAndChoices) {
   using Words = std::set<std::string>;
-  EXPECT_EQ(offered("fogbench", "pl"), Words{"plan"});
-  EXPECT_EQ(offered("fogbench", "run coil"), Words{"coil-sweep"});
-  EXPECT_EQ(offered("fogbench", "dry-run coil-sweep --bench simulated-"), Words{"simulated-1khz"});
-  EXPECT_EQ(offered("fogbench", "device ''"), (Words{"check", "probe"}));
-  EXPECT_EQ(offered("fogbench", "answer ''"), (Words{"no", "yes"}));
-  EXPECT_EQ(offered("fogbench", "fit 7 -o fit"), Words{""}) << "a file's name is bash's own";
-  EXPECT_EQ(offered("fogbenchd", "--scenario hyst"), Words{"hysteresis-z"});
+  const std::vector<std::pair<std::string, Words>> expected{
+      {"pl", {"plan"}},
+      {"run coil", {"coil-sweep"}},
+      {"dry-run coil-sweep --bench simulated-", {"simulated-1khz"}},
+      {"device ''", {"check", "probe"}},
+      {"answer ''", {"no", "yes"}},
+      {"fit 7 -o fit", {}},  // a file's name is bash's own
+      {"fit '$(exit 1)' --mod", {"--model"}}};
+  std::vector<std::string> lines;
+  for (const auto& [line, words] : expected) lines.push_back(line);
+  const auto offers = offered("fogbench", lines);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(offers[i], expected[i].second) << expected[i].first;
+  }
+  EXPECT_EQ(offered("fogbenchd", {"--scenario hyst"}).front(), Words{"hysteresis-z"});
 }
 
 // Ready files are found from where the program is, and nothing of the build tree is needed.
