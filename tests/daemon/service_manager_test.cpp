@@ -2,12 +2,21 @@
 
 #include "daemon/service_manager.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <map>
+#include <sstream>
+
+#include "config/exit_status.hpp"
+#include "daemon/control_server.hpp"
+#include "daemon/serve.hpp"
 #include "drivers/file_descriptor.hpp"
+#include "procedures/bench_watch.hpp"
+#include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fogbench::daemon {
@@ -114,6 +123,25 @@ TEST_F(ServiceManagerTest, SaysNothingOfAWatchdogThatIsOff) {
   unsetenv("WATCHDOG_USEC");  // NOLINT(concurrency-mt-unsafe)
   ServiceManager manager(clock_);
   EXPECT_THAT(told_after_a_second(manager), ElementsAre("STATUS=idle"));
+}
+
+// What the unit says must leave room for what the daemon promises.
+TEST(ServiceUnit, AgreesWithTheDaemon) {
+  std::map<std::string, std::string> unit;
+  std::istringstream lines(
+      support::read_text(tests::source_tree() / "config/systemd/fogbenchd.service"));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find('=');
+    if (equals != std::string::npos) unit[line.substr(0, equals)] = line.substr(equals + 1);
+  }
+  EXPECT_EQ(unit["Type"], "notify");
+  EXPECT_GT(std::stoi(unit["TimeoutStopSec"]), kAbortTime.count()) << "no kill during an abort";
+  EXPECT_GT(std::stoi(unit["WatchdogSec"]), procedures::BenchWatch::kLongestOutage.count())
+      << "a silent instrument is the engine's business";
+  EXPECT_GE(std::stoul(unit["LimitNOFILE"]), 2 * ControlServer::kMostConnections);
+  EXPECT_EQ(unit["RestartPreventExitStatus"],
+            fmt::format("{} {}", static_cast<int>(ExitStatus::kUsage),
+                        static_cast<int>(ExitStatus::kBadInput)));
 }
 
 }  // namespace
