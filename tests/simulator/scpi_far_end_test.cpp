@@ -159,10 +159,8 @@ TEST(ScpiFarEnd, FailsInTheWaysOfTheScenario) {
     double current_a;    ///< when it is over
   };
   const Case cases[] = {
-      {FaultKind::kTimeout, "no answer", 0.0},
-      {FaultKind::kUnplug, "unplugged", 0.0},
-      {FaultKind::kLateAnswer, "no answer", 1.0},
-      {FaultKind::kSilentExecution, "no answer", 1.0},
+      {FaultKind::kTimeout, "no answer", 0.0},    {FaultKind::kUnplug, "unplugged", 0.0},
+      {FaultKind::kLateAnswer, "no answer", 1.0}, {FaultKind::kSilentExecution, "no answer", 1.0},
       {FaultKind::kException, "no answer", 0.0},
   };
   for (const Case& c : cases) {
