@@ -1,14 +1,19 @@
 // fogbench device probe: what an instrument says, through its description. Reads only.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "cli/command.hpp"
 #include "cli/describe_device.hpp"
 #include "cli/output.hpp"
+#include "config/bench.hpp"
+#include "config/json_file.hpp"
+#include "config/paths.hpp"
 #include "drivers/open_ports.hpp"
 #include "drivers/probe.hpp"
 
@@ -20,8 +25,33 @@ using drivers::ProbeReport;
 struct ProbeOptions {
   std::string device;
   std::string connection;
+  std::string bench;
   bool json = false;
 };
+
+/// The instrument that the bench calls so: its description as the bench runs it, and where it is.
+Result<std::pair<config::DeviceFile, std::string>> find_in_bench(const std::string& bench_name,
+                                                                 const std::string& role) {
+  const auto file = config::find_config("benches", bench_name);
+  if (!file) return file.error();
+  const auto bench = config::load_bench(*file);
+  if (!bench) return bench.error();
+  std::map<std::string, std::pair<config::DeviceFile, std::string>> instruments{
+      {"thermostat", {bench->thermostat.device, bench->thermostat.connection}},
+      {"coil_horizontal", {bench->coil_horizontal.device, bench->coil_horizontal.connection}},
+      {"coil_vertical", {bench->coil_vertical.device, bench->coil_vertical.connection}},
+      {"magnetometer", {bench->magnetometer.device, bench->magnetometer.connection}},
+      {"gyro", {bench->gyro.device, bench->gyro.connection}}};
+  if (bench->turntable.device) {
+    instruments["turntable"] = {*bench->turntable.device, bench->turntable.connection};
+  }
+  const auto found = instruments.find(role);
+  if (found != instruments.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [name, instrument] : instruments) names.push_back(name);
+  return config::bad_input(
+      fmt::format("bench {} has no \"{}\"; it has {}", bench->name, role, fmt::join(names, ", ")));
+}
 
 /// Opens what the connection names, for the kind of instrument that the description is of, and
 /// asks.
@@ -67,10 +97,19 @@ void print(const ProbeReport& report) {
 }
 
 Result<ExitStatus> run_probe(const ProbeOptions& options) {
-  const auto device = read_device(options.device);
-  if (!device) return device.error();
+  std::string connection = options.connection;
+  Result<config::DeviceFile> device = config::DeviceFile();
+  if (options.bench.empty()) {
+    device = read_device(options.device);
+    if (!device) return device.error();
+  } else {
+    auto found = find_in_bench(options.bench, options.device);
+    if (!found) return found.error();
+    device = std::move(found->first);
+    connection = std::move(found->second);
+  }
   const auto report =
-      std::visit([&](const auto& its) { return probe_at(its, options.connection); }, *device);
+      std::visit([&](const auto& its) { return probe_at(its, connection); }, *device);
   if (!report) return report.error();
   if (options.json) {
     print_json(to_json(*report));
@@ -92,12 +131,18 @@ void add_device_probe(CLI::App& device, Action& action) {
       "Show what an instrument says, raw beside scaled; sets nothing, sends no self test",
       "  fogbench device probe thermostat-eurotherm --connection tcp:192.168.1.5:502\n"
       "  fogbench device probe coil-kepco --connection usb:0x0957:0x1234:BOP0001\n"
-      "  fogbench device probe gyro-kvh --connection tty:/dev/ttyUSB1",
+      "  fogbench device probe gyro-kvh --connection tty:/dev/ttyUSB1\n"
+      "  fogbench device probe gyro --bench my-bench.json      at the bench's frame rate",
       [](CLI::App& command, ProbeOptions& options) {
-        command.add_option("FILE", options.device, "Device file, or the name of a ready one")
+        command
+            .add_option(
+                "FILE", options.device,
+                "Device file, or the name of a ready one; with --bench, an instrument of it")
             ->required();
-        command.add_option("--connection", options.connection, "Where it is, as in a bench file")
-            ->required();
+        auto* const where = command.add_option_group("where");
+        where->add_option("--connection", options.connection, "Where it is, as in a bench file");
+        where->add_option("--bench", options.bench, "The bench that says where and what it is");
+        where->require_option(1);
         command.add_flag("--json", options.json, "One JSON document on stdout");
       },
       run_probe);

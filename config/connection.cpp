@@ -1,5 +1,6 @@
 #include "config/connection.hpp"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,8 +40,12 @@ std::optional<TcpConnection> parse_tcp(std::string_view rest) {
   if (!port) return std::nullopt;
   const auto number = parse_number<std::uint16_t>(*port);
   if (rest.starts_with('[') && rest.ends_with(']')) rest = rest.substr(1, rest.size() - 2);
-  if (!number || *number == 0 || rest.empty()) return std::nullopt;
-  return TcpConnection{std::string(rest), *number};
+  std::string host(rest);
+  std::array<unsigned char, sizeof(in6_addr)> address;
+  const bool numeric = inet_pton(AF_INET, host.c_str(), address.data()) == 1 ||
+                       inet_pton(AF_INET6, host.c_str(), address.data()) == 1;
+  if (!number || *number == 0 || !numeric) return std::nullopt;
+  return TcpConnection{std::move(host), *number};
 }
 
 std::optional<RtuConnection> parse_rtu(std::string_view rest) {
@@ -105,7 +110,10 @@ Result<Connection> parse_connection(std::string_view text) {
   const std::string_view scheme = text.substr(0, text.find(':') + 1);
   const std::string_view rest = text.substr(scheme.size());
   if (scheme == "tcp:") {
-    return made<TcpConnection>(text, parse_tcp(rest), "tcp:HOST:PORT, such as tcp:192.168.1.5:502");
+    return made<TcpConnection>(
+        text, parse_tcp(rest),
+        "tcp:ADDRESS:PORT, such as tcp:192.168.1.5:502, with an address in numbers: looking up a "
+        "name has no deadline");
   }
   if (scheme == "rtu:") {
     return made<RtuConnection>(

@@ -2,14 +2,16 @@
 // Where an instrument is connected, as a bench file says it:
 //
 //   simulated                              the simulated bench, in memory
-//   tcp:HOST:PORT                          Modbus TCP
+//   tcp:ADDRESS:PORT                       Modbus TCP
 //   rtu:TTY:BAUD[:8N1]                     Modbus RTU; 8E1, 8O1 and 8N2 are the other formats
 //   usb:VENDOR:PRODUCT:SERIAL              a USBTMC instrument, by its serial number
 //   hid:VENDOR:PRODUCT:SERIAL              a HID instrument, by its serial number
 //   tty:TTY[:BAUD]                         a serial line, 8N1
 //
-// VENDOR and PRODUCT are hexadecimal, "0x0957". A TTY is an absolute path; the names in
-// /dev/serial/by-id stay with the adapter wherever it is plugged in.
+// ADDRESS is in numbers, 192.168.1.5 or [fd00::5]: nobody can say how long a look-up of a name
+// takes, and a bench whose thermostat is gone must know within its deadline. VENDOR and PRODUCT are
+// hexadecimal, "0x0957". A TTY is an absolute path; the names in /dev/serial/by-id stay with the
+// adapter wherever it is plugged in.
 
 #include <cstdint>
 #include <optional>

@@ -47,8 +47,9 @@ bool check(const Place& at, const InstrumentConfig& instrument);
 template <class Visitor>
 void describe_instrument(Visitor& v, InstrumentConfig& i) {
   v.optional("connection", i.connection,
-             "\"simulated\", or where it is: tcp:HOST:PORT, rtu:TTY:BAUD[:8E1], "
-             "usb:VENDOR:PRODUCT:SERIAL, hid:VENDOR:PRODUCT:SERIAL, tty:TTY[:BAUD].");
+             "\"simulated\", or where it is: tcp:ADDRESS:PORT, rtu:TTY:BAUD[:8E1], "
+             "usb:VENDOR:PRODUCT:SERIAL, hid:VENDOR:PRODUCT:SERIAL, tty:TTY[:BAUD]. ADDRESS is in "
+             "numbers, since looking up a name has no deadline.");
   v.optional("serial_number", i.serial_number, "For the protocol of the acceptance.");
   v.optional("calibrated_on", i.calibrated_on, "Date of the certificate, YYYY-MM-DD.");
   v.optional("calibration_due", i.calibration_due, "Date until which it is valid, YYYY-MM-DD.");

@@ -1,7 +1,6 @@
 #include "drivers/frame_counter.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace fogbench::drivers {
 namespace {
@@ -57,18 +56,27 @@ void FrameCounter::settle(std::optional<Clock::Instant> empty_at, std::int64_t p
   has_repeats_ = false;
   jump_ = 0;
   jump_entry_ = 0;
+  late_ = std::numeric_limits<double>::infinity();
 }
 
-std::int64_t FrameCounter::missing_turns(Clock::Instant empty_at, std::int64_t periods_since) {
+double FrameCounter::least_late(Clock::Instant empty_at, std::int64_t periods_since) {
   const auto counted = static_cast<double>(last_index_ + periods_since);
   if (!origin_) {
     origin_ = empty_at;
     phase_ = -counted;
   }
   const double late = to_seconds(empty_at - *origin_) * frame_rate_hz_ - counted - phase_;
-  std::int64_t turns = std::llround(late / static_cast<double>(modulus_));
-  const bool lost_before = has_new_ && (silent_ || jump_ > 0);
-  silent_ = turns > 0 && !lost_before;
+  return late_ = std::min(late_, late);
+}
+
+bool FrameCounter::misses_turns(Clock::Instant empty_at, std::int64_t periods_since) {
+  return last_index_ >= 0 && turns_in(least_late(empty_at, periods_since)) > 0 && lost_before();
+}
+
+std::int64_t FrameCounter::missing_turns(Clock::Instant empty_at, std::int64_t periods_since) {
+  const double late = least_late(empty_at, periods_since);
+  std::int64_t turns = turns_in(late);
+  silent_ = turns > 0 && !lost_before();
   if (silent_ || (turns < 0 && jump_ == 0)) turns = 0;
 
   // A frame never arrives before it was measured, so a smaller phase is the truer one.

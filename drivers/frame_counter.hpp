@@ -14,10 +14,16 @@
 //          fallen silent: nothing is missing yet, and the next frames will tell.
 //   k < 0  frames came again that had been received before, and their first looked like a jump.
 //
+// Frames that a busy machine brings late look just like lost turns, but only for a moment. So
+// before turns are put in, misses_turns() is asked again and again while the line is read on: what
+// counts is the least that was missing meanwhile.
+//
 // The clock is only asked for the nearest whole turn, so its jitter and the instrument's own
 // oscillator do not matter as long as they stay below half a turn (64 periods of 128).
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "drivers/clock.hpp"
@@ -55,6 +61,10 @@ class FrameCounter {
     return last_index_ += step;
   }
 
+  /// Whether settle() would put lost turns in, from this moment and all at which it was asked since
+  /// the last settle(). `empty_at`, `periods_since`: as there.
+  bool misses_turns(Clock::Instant empty_at, std::int64_t periods_since);
+
   /// Makes the last `entries` entries of `block` final: puts lost turns where they belong, takes
   /// repeated frames out and counts them. `empty_at`: when the line was found empty, if it was.
   /// `periods_since`: how many frames' worth of bytes have come after the last frame.
@@ -67,6 +77,13 @@ class FrameCounter {
  private:
   /// Whole turns to put in now; follows the phase.
   std::int64_t missing_turns(Clock::Instant empty_at, std::int64_t periods_since);
+  /// Periods by the clock beyond those counted: the least since the last settle().
+  double least_late(Clock::Instant empty_at, std::int64_t periods_since);
+  std::int64_t turns_in(double periods) const {
+    return std::llround(periods / static_cast<double>(modulus_));
+  }
+  /// New frames have come, and there is a place where turns can have been lost before them.
+  bool lost_before() const { return has_new_ && (silent_ || jump_ > 0); }
 
   std::int64_t modulus_;
   double frame_rate_hz_;
@@ -79,6 +96,7 @@ class FrameCounter {
   bool has_repeats_ = false;
   std::int64_t jump_ = 0;  ///< the largest number of frames missing at once without a trace
   std::size_t jump_entry_ = 0;
+  double late_ = std::numeric_limits<double>::infinity();  ///< the least, in periods
 
   std::optional<Clock::Instant> origin_;
   double phase_ = 0.0;   ///< periods by the clock since origin_, minus index: follows slow drift

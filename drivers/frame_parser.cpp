@@ -156,9 +156,7 @@ void FrameParser::parse(std::size_t count, GyroBlock& block) {
 }
 
 void FrameParser::settle(std::optional<Clock::Instant> empty_at, GyroBlock& block) {
-  const std::size_t since = unframed_bytes_ + filled_;
-  counter_.settle(empty_at, static_cast<std::int64_t>(since / frame_bytes_), entries_, block,
-                  statistics_);
+  counter_.settle(empty_at, periods_since(), entries_, block, statistics_);
   entries_ = 0;
 }
 

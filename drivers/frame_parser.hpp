@@ -39,6 +39,11 @@ class FrameParser {
   /// Takes `count` bytes out of space() and appends their good frames to `block`, with provisional
   /// indexes.
   void parse(std::size_t count, GyroBlock& block);
+  /// Whether frames seem to be lost that may only be late (see FrameCounter). `empty_at`: when the
+  /// line was found empty.
+  bool misses_turns(Clock::Instant empty_at) {
+    return counter_.misses_turns(empty_at, periods_since());
+  }
   /// Makes the indexes of all entries since the last call final (see FrameCounter).
   /// `empty_at`: the moment at which the line was found empty; none when it was not.
   /// Precondition: those entries are still the last ones of `block`.
@@ -73,6 +78,10 @@ class FrameParser {
     std::uint64_t word = 0;
     std::memcpy(&word, place, sizeof word);
     return (word & header_mask_) == header_;
+  }
+  /// Frames' worth of bytes that have come after the last frame.
+  std::int64_t periods_since() const {
+    return static_cast<std::int64_t>((unframed_bytes_ + filled_) / frame_bytes_);
   }
   /// The first place in [place, stop) where a header stands; stop when there is none.
   const std::uint8_t* find_header(const std::uint8_t* place, const std::uint8_t* stop) const;

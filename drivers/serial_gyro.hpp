@@ -24,7 +24,8 @@ class SerialGyro final : public Gyro {
   Result<std::string> identity() override { return identity_; }
   /// Silent for longer than a second and ten frame periods: kTimeout when no byte came, kProtocol
   /// when bytes came but no good frame was among them (wrong baud rate, wrong layout). Good frames
-  /// are appended even when an error is returned.
+  /// are appended even when an error is returned. Where frames seem to be lost that may only be
+  /// late, it waits for them, half a second unless the machine is busy.
   Status read(GyroBlock& out) override;
   const StreamStatistics& statistics() const override { return parser_.statistics(); }
   Clock::Instant time_of(std::int64_t index) const override;
@@ -34,6 +35,8 @@ class SerialGyro final : public Gyro {
   SerialGyro(std::string name, const config::GyroConfig& config,
              std::unique_ptr<SerialTransport> transport, Clock& clock);
   Status wait_for_first_frame();
+  /// Parses what has arrived; whether the line was found empty.
+  Result<bool> take(GyroBlock& out);
 
   std::string name_;
   std::string identity_;

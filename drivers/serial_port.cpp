@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -108,6 +109,8 @@ class Line {
   /// At most out.size() bytes; an error only when all that had come is taken.
   Result<std::size_t> take(std::span<std::byte> out) {
     const std::lock_guard lock(mutex_);
+    // On a busy machine the kernel has bytes that the thread has had no time for.
+    if (taken_ == arrived_.size() && failure_.empty()) receive_some();
     const std::size_t count = std::min(out.size(), arrived_.size() - taken_);
     if (count == 0 && !failure_.empty()) return Error{ErrorCode::kUnplugged, failure_};
     std::copy_n(arrived_.begin() + static_cast<std::ptrdiff_t>(taken_), count, out.begin());
@@ -121,26 +124,30 @@ class Line {
 
  private:
   void receive() {
-    std::vector<std::byte> bytes(kMostAtOnce);
     pollfd ready[] = {{fd(), POLLIN, 0}, {stop_.get(), POLLIN, 0}};
     while (::poll(ready, 2, -1) >= 0 || errno == EINTR) {
       if (ready[1].revents != 0) return;
-      const ssize_t count = ::read(fd(), bytes.data(), bytes.size());
-      if (count < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-      const std::string why = count == 0 ? "it has hung up" : count < 0 ? reason(errno) : "";
       const std::lock_guard lock(mutex_);
-      failure_ = why;
-      if (count <= 0) return;
-      // When nobody has asked for minutes the newest is lost, as it would be in the kernel.
-      if (arrived_.size() < kMostKept) {
-        arrived_.insert(arrived_.end(), bytes.begin(), bytes.begin() + count);
-      }
+      receive_some();
+      if (!failure_.empty()) return;
+    }
+  }
+
+  /// Under mutex_, so that bytes read later do not come before. Never waits.
+  void receive_some() {
+    const ssize_t count = ::read(fd(), bytes_.data(), bytes_.size());
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
+    failure_ = count == 0 ? "it has hung up" : count < 0 ? reason(errno) : "";
+    // When nobody has asked for minutes the newest is lost, as it would be in the kernel.
+    if (count > 0 && arrived_.size() < kMostKept) {
+      arrived_.insert(arrived_.end(), bytes_.begin(), bytes_.begin() + count);
     }
   }
 
   std::unique_ptr<FileDescriptor> fd_;
   FileDescriptor stop_;
   std::mutex mutex_;
+  std::array<std::byte, kMostAtOnce> bytes_;
   std::vector<std::byte> arrived_;  ///< of which the first taken_ were asked for
   std::size_t taken_ = 0;
   std::string failure_;  ///< why the line has ended; empty while it has not

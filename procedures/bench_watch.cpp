@@ -144,9 +144,9 @@ Status BenchWatch::note(Outage& outage, const Status& outcome) {
   const config::Seconds longest = unplugged ? config_.limits.absence_maximum : kLongestOutage;
   if (now - *outage.since <= drivers::from_seconds(longest.count())) return {};
   // Nobody waits for it any longer, so this is no interruption any more.
-  return Error{
-      unplugged ? ErrorCode::kDevice : outcome.error().code,
-      fmt::format("{}: no reading for {} s: {}", outage.instrument, longest.count(), fault)};
+  return Error{unplugged ? ErrorCode::kDevice : outcome.error().code,
+               fmt::format("{}; no reading for {} s", drivers::named(outage.instrument, fault),
+                           longest.count())};
 }
 
 bool BenchWatch::all_answer() const {

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <exception>
 
+#include "drivers/named_error.hpp"
 #include "procedures/bench_watch.hpp"
 #include "procedures/estimate.hpp"
 #include "procedures/remaining_time.hpp"
@@ -369,9 +370,7 @@ Result<std::vector<InstrumentRecord>> RunEngine::identify_instruments() {
                             const config::InstrumentConfig& config) -> Status {
     auto identity = instrument.identity();
     for (int i = 1; i < RunSession::kTries && !identity; ++i) identity = instrument.identity();
-    if (!identity) {
-      return Error{identity.error().code, fmt::format("{}: {}", role, identity.error().message)};
-    }
+    if (!identity) return drivers::named(role, identity.error());
     records.push_back(
         {role, *identity, config.serial_number, config.calibrated_on, config.calibration_due});
     return {};

@@ -39,7 +39,7 @@ class Lines {
                             std::initializer_list<FaultKind> possible) const {
     Result<FaultSchedule> faults = FaultSchedule::create(scenario_.faults, device, possible);
     if (!faults) return faults.error();
-    return InstrumentLine(device, plant_, clock_, *std::move(faults),
+    return InstrumentLine(plant_, clock_, *std::move(faults),
                           derive_seed(seed_, device + " garbage"), late_by_);
   }
 
@@ -59,7 +59,8 @@ Result<FarEnds> make_far_ends(const config::BenchConfig& config,
   if (!config.turntable.motorised || !config.turntable.device) {
     return Error{ErrorCode::kBadInput,
                  "bench: /turntable/motorised is false, expected true: nobody turns the simulated "
-                 "gyro by hand"};
+                 "gyro by hand; fogbench plan shows a procedure on this bench, and a copy of it "
+                 "with the turntable of the bench simulated can be run dry"};
   }
   if (Status s = check_devices(scenario.faults); !s) return s.error();
   Result<std::unique_ptr<Plant>> made = Plant::create(config, scenario, seed, clock);

@@ -54,7 +54,7 @@ Result<std::size_t> GyroFarEnd::read_some(std::span<std::byte> out) {
   if (has_faults) {
     make_with_faults(complete);
     if (faults_.active(FaultKind::kUnplug, plant_->now_s())) {
-      return Error{ErrorCode::kUnplugged, "gyro: unplugged"};
+      return Error{ErrorCode::kUnplugged, "unplugged"};
     }
   }
   while (to != end) {

@@ -54,10 +54,10 @@ std::int64_t HidFarEnd::newest() const {
 Result<std::size_t> HidFarEnd::read_report(std::span<std::uint8_t> out,
                                            drivers::Clock::Duration timeout) {
   line_.begin("report");
-  if (line_.fault(FaultKind::kUnplug)) return line_.error(ErrorCode::kUnplugged, "unplugged");
+  if (line_.fault(FaultKind::kUnplug)) return Error{ErrorCode::kUnplugged, "unplugged"};
   if (out.size() < device_.report_bytes) {
-    return line_.error(ErrorCode::kProtocol, fmt::format("a report has {} bytes, room for {}",
-                                                         device_.report_bytes, out.size()));
+    return Error{ErrorCode::kProtocol, fmt::format("a report has {} bytes, room for {}",
+                                                   device_.report_bytes, out.size())};
   }
   const bool in_vain = line_.fault(FaultKind::kTimeout) || line_.fault(FaultKind::kLateAnswer);
   if (in_vain) {
@@ -71,7 +71,7 @@ Result<std::size_t> HidFarEnd::read_report(std::span<std::uint8_t> out,
   }
   line_.plant().advance();
   const std::int64_t number = newest();
-  if (number <= last_read_ || in_vain) return line_.error(ErrorCode::kTimeout, "no report");
+  if (number <= last_read_ || in_vain) return Error{ErrorCode::kTimeout, "no report"};
   last_read_ = number;
   encode(number, out.first(device_.report_bytes));
   return device_.report_bytes;
@@ -124,8 +124,8 @@ void HidFarEnd::encode(std::int64_t number, std::span<std::uint8_t> report) {
 }
 
 Status HidFarEnd::write_report(std::span<const std::uint8_t> report) {
-  if (line_.fault(FaultKind::kUnplug)) return line_.error(ErrorCode::kUnplugged, "unplugged");
-  if (report.empty()) return line_.error(ErrorCode::kProtocol, "an empty report");
+  if (line_.fault(FaultKind::kUnplug)) return Error{ErrorCode::kUnplugged, "unplugged"};
+  if (report.empty()) return Error{ErrorCode::kProtocol, "an empty report"};
   return {};
 }
 

@@ -5,7 +5,7 @@
 namespace fogbench::simulator {
 
 Status InstrumentLine::request(drivers::Clock::Duration takes, drivers::Clock::Duration timeout) {
-  if (fault(FaultKind::kUnplug)) return error(ErrorCode::kUnplugged, "unplugged");
+  if (fault(FaultKind::kUnplug)) return Error{ErrorCode::kUnplugged, "unplugged"};
   deadline_ = clock_.now() + timeout;
   if (fault(FaultKind::kTimeout)) return wait_in_vain();
   constexpr int kSlowFactor = 20;
@@ -22,10 +22,10 @@ Status InstrumentLine::answer() {
   }
   if (late) clock_.sleep_until(deadline_ + late_by_);
   if (fault(FaultKind::kBadChecksum)) {
-    return error(ErrorCode::kProtocol, "the answer's check value is wrong");
+    return Error{ErrorCode::kProtocol, "the answer's check value is wrong"};
   }
   if (fault(FaultKind::kBadSequence)) {
-    return error(ErrorCode::kProtocol, "the answer is to another request");
+    return Error{ErrorCode::kProtocol, "the answer is to another request"};
   }
   return {};
 }
@@ -33,7 +33,7 @@ Status InstrumentLine::answer() {
 Error InstrumentLine::wait_in_vain() {
   clock_.sleep_until(deadline_);
   plant_->advance();
-  return error(ErrorCode::kTimeout, "no answer");
+  return Error{ErrorCode::kTimeout, "no answer"};
 }
 
 }  // namespace fogbench::simulator

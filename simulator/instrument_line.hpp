@@ -19,10 +19,9 @@ class InstrumentLine {
  public:
   /// A late answer comes `late_by` after the request's deadline; with 0 nobody is there any more
   /// to hear it.
-  InstrumentLine(std::string name, std::shared_ptr<Plant> plant, drivers::Clock& clock,
-                 FaultSchedule faults, std::uint64_t seed, drivers::Clock::Duration late_by = {})
-      : name_(std::move(name)),
-        plant_(std::move(plant)),
+  InstrumentLine(std::shared_ptr<Plant> plant, drivers::Clock& clock, FaultSchedule faults,
+                 std::uint64_t seed, drivers::Clock::Duration late_by = {})
+      : plant_(std::move(plant)),
         clock_(clock),
         late_by_(late_by),
         faults_(std::move(faults)),
@@ -47,15 +46,9 @@ class InstrumentLine {
   Plant& plant() { return *plant_; }
   const Plant& plant() const { return *plant_; }
   drivers::Clock& clock() { return clock_; }
-  const std::string& name() const { return name_; }
   RandomEngine& random() { return random_; }
 
-  Error error(ErrorCode code, const std::string& what) const {
-    return Error{code, name_ + ": " + what};
-  }
-
  private:
-  std::string name_;
   std::shared_ptr<Plant> plant_;  // Shared: the last far end to go takes the plant with it.
   drivers::Clock& clock_;
   drivers::Clock::Duration late_by_;

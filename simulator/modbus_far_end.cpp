@@ -54,8 +54,7 @@ Error ModbusFarEnd::exception(int code) {
   last_exception_ = code;
   constexpr const char* kMeaning[] = {"", "illegal function", "illegal data address",
                                       "illegal data value", "device failure"};
-  return line_.error(ErrorCode::kDevice,
-                     fmt::format("Modbus exception {} ({})", code, kMeaning[code]));
+  return Error{ErrorCode::kDevice, fmt::format("Modbus exception {} ({})", code, kMeaning[code])};
 }
 
 Status ModbusFarEnd::check_count(std::size_t count) {

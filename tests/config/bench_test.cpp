@@ -37,8 +37,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "/gyro/connection: found \"ttyUSB0\", expected \"simulated\", or an address"},
         Mistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "tty:"}])",
                 "/gyro/connection: found \"tty:\", expected tty:TTY"},
-        Mistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "tcp:localhost:502"}])",
-                "/gyro/connection: found \"tcp:localhost:502\", expected a gyro on tty:"},
+        Mistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "tcp:127.0.0.1:502"}])",
+                "/gyro/connection: found \"tcp:127.0.0.1:502\", expected a gyro on tty:"},
         Mistake{
             R"([{"op": "replace", "path": "/thermostat/connection", "value": "tty:/dev/tty1"}])",
             "/thermostat/connection: found \"tty:/dev/tty1\", expected a thermostat on tcp: or"},

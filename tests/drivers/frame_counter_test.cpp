@@ -103,6 +103,34 @@ TEST_F(FrameCounterTest, AWholeTurnLostInsideOneReadShowsInTheNext) {
   EXPECT_EQ(statistics_.frames_missing, 128u);
 }
 
+TEST_F(FrameCounterTest, FramesThatAreOnlyLateAreNotLost) {
+  receive(0, 999);
+  settle_at(1.0);
+  receive(1000, 1919);  // the machine is busy: the others wait somewhere
+  settle_at(2.0);
+  receive(1920, 2919);
+  EXPECT_TRUE(counter_.misses_turns(Clock::Instant{from_seconds(3.0)}, 0));
+  receive(2920, 3004);
+  EXPECT_FALSE(counter_.misses_turns(Clock::Instant{from_seconds(3.005)}, 0));
+  receive(3005, 3010);
+  settle_at(3.2);  // late again, but what was seen a moment ago holds
+  expect_aligned();
+  EXPECT_EQ(statistics_.frames_missing, 0u);
+}
+
+TEST_F(FrameCounterTest, WhatIsStillMissingWhenFramesGoOnIsLost) {
+  receive(0, 999);
+  settle_at(1.0);
+  settle_at(1.512);  // four turns
+  receive(1512, 1999);
+  EXPECT_TRUE(counter_.misses_turns(Clock::Instant{from_seconds(2.0)}, 0));
+  receive(2000, 2399);
+  EXPECT_TRUE(counter_.misses_turns(Clock::Instant{from_seconds(2.47)}, 0));
+  settle_at(2.47);  // 70 late: the least that was missing counts
+  expect_aligned();
+  EXPECT_EQ(statistics_.frames_missing, 512u);
+}
+
 TEST_F(FrameCounterTest, DamagedFramesAreNoSilence) {
   receive(0, 999);
   settle_at(1.0);

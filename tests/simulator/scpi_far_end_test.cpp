@@ -159,11 +159,9 @@ TEST(ScpiFarEnd, FailsInTheWaysOfTheScenario) {
     double current_a;    ///< when it is over
   };
   const Case cases[] = {
-      {FaultKind::kTimeout, "coil_vertical: no answer", 0.0},
-      {FaultKind::kUnplug, "coil_vertical: unplugged", 0.0},
-      {FaultKind::kLateAnswer, "coil_vertical: no answer", 1.0},
-      {FaultKind::kSilentExecution, "coil_vertical: no answer", 1.0},
-      {FaultKind::kException, "coil_vertical: no answer", 0.0},
+      {FaultKind::kTimeout, "no answer", 0.0},    {FaultKind::kUnplug, "unplugged", 0.0},
+      {FaultKind::kLateAnswer, "no answer", 1.0}, {FaultKind::kSilentExecution, "no answer", 1.0},
+      {FaultKind::kException, "no answer", 0.0},
   };
   for (const Case& c : cases) {
     TestFarEnds bench(test_bench(), during(c.kind));

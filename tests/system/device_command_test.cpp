@@ -57,6 +57,10 @@ TEST_F(DeviceCommand, WithoutASubcommandOrAFileIsAUsageError) {
   expect_refused(fogbench({"device"}), 2, "subcommand");
   expect_refused(fogbench({"device", "check"}), 2, "FILE");
   expect_refused(fogbench({"device", "check", "no-such-device"}), 3, "no-such-device");
+  expect_refused(fogbench({"device", "probe", "gyro-kvh"}), 2, "--bench");
+  expect_refused(fogbench({"device", "probe", "gyro-kvh", "--bench", "factory"}), 3,
+                 "it has coil_horizontal");
+  expect_refused(fogbench({"device", "probe", "gyro", "--bench", "simulated"}), 3, "simulated");
 }
 
 }  // namespace

@@ -125,6 +125,10 @@ TEST_F(SimulateTest, WritesABenchThatMeetsIt) {
   EXPECT_TRUE(fs::is_symlink(tty)) << tty;
   // It is a bench like any other: whole, and with device files that are found.
   EXPECT_EQ(fogbench({"plan", "coil-sweep", "--bench", file}).status, 0);
+  // Its gyro is looked at as this bench runs it, not as its device file says.
+  const Finished gyro = fogbench({"device", "probe", "gyro", "--bench", file});
+  EXPECT_EQ(gyro.status, 0) << gyro.err;
+  EXPECT_TRUE(std::regex_search(gyro.out, std::regex("expected about 1[0-9]{3};"))) << gyro.out;
 
   EXPECT_EQ(interrupt(bench).status, 0);
   EXPECT_FALSE(fs::exists(fs::path(tty).parent_path())) << "nothing stays behind";
