@@ -9,19 +9,6 @@
 namespace fogbench::config {
 namespace {
 
-/// YYYY-MM-DD, a day that exists.
-bool is_date(const std::string& text) {
-  if (text.size() != 10 || text[4] != '-' || text[7] != '-') return false;
-  for (const std::size_t i : {0U, 1U, 2U, 3U, 5U, 6U, 8U, 9U}) {
-    if (text[i] < '0' || text[i] > '9') return false;
-  }
-  const std::chrono::year_month_day date{
-      std::chrono::year{std::stoi(text.substr(0, 4))},
-      std::chrono::month{static_cast<unsigned>(std::stoi(text.substr(5, 2)))},
-      std::chrono::day{static_cast<unsigned>(std::stoi(text.substr(8, 2)))}};
-  return date.ok();
-}
-
 /// Every kind of instrument has its own ways to be reached; all can be simulated.
 bool check_scheme(const Place& at, const InstrumentConfig& i,
                   std::initializer_list<std::string_view> schemes, std::string_view expected) {
@@ -32,6 +19,19 @@ bool check_scheme(const Place& at, const InstrumentConfig& i,
 }
 
 }  // namespace
+
+std::optional<std::chrono::sys_days> date_of(const std::string& text) {
+  if (text.size() != 10 || text[4] != '-' || text[7] != '-') return std::nullopt;
+  for (const std::size_t i : {0U, 1U, 2U, 3U, 5U, 6U, 8U, 9U}) {
+    if (text[i] < '0' || text[i] > '9') return std::nullopt;
+  }
+  const std::chrono::year_month_day date{
+      std::chrono::year{std::stoi(text.substr(0, 4))},
+      std::chrono::month{static_cast<unsigned>(std::stoi(text.substr(5, 2)))},
+      std::chrono::day{static_cast<unsigned>(std::stoi(text.substr(8, 2)))}};
+  if (!date.ok()) return std::nullopt;
+  return std::chrono::sys_days{date};
+}
 
 std::optional<DeviceFile> read_named_device(const Place& at) {
   std::string name;
@@ -52,7 +52,7 @@ bool check(const Place& at, const InstrumentConfig& i) {
   if (!connection) return (at / "connection").fail(connection.error().message);
   for (const auto& [key, date] : {std::pair{"calibrated_on", &i.calibrated_on},
                                   std::pair{"calibration_due", &i.calibration_due}}) {
-    if (!date->empty() && !is_date(*date)) return (at / key).wrong("a date, YYYY-MM-DD");
+    if (!date->empty() && !date_of(*date)) return (at / key).wrong("a date, YYYY-MM-DD");
   }
   return true;
 }
@@ -132,11 +132,14 @@ bool check(const Place& at, const BenchConfig& b) {
                           b.limits.temperature_maximum.value,
                           b.thermostat.device.target_maximum.value));
   }
-  return true;
+  const Place interlocks = at / "interlocks";
+  return !interlocks.present() || check_interlocks(interlocks, b);
 }
 
 Result<BenchConfig> load_bench(const std::filesystem::path& file) {
-  return read_config<BenchConfig>(file);
+  auto bench = read_config<BenchConfig>(file);
+  if (bench && bench->interlocks.empty()) bench->interlocks = default_interlocks(*bench);
+  return bench;
 }
 
 }  // namespace fogbench::config

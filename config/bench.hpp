@@ -4,11 +4,14 @@
 // The section `simulation` holds what only the simulated bench needs: the true plant.
 
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/device.hpp"
+#include "config/interlock.hpp"
 #include "config/result.hpp"
 #include "config/units.hpp"
 
@@ -61,8 +64,6 @@ struct BenchLimits {
   /// The ambient field that compensation may have to null along one axis: a sweep's current is
   /// checked with it on top. Mid-latitudes have 50 uT along the vertical.
   Microtesla compensation_maximum{55.0};
-  /// The control sensor farther than this from the working sensors' mean is a recorded warning.
-  Celsius sensor_disagreement{1.0};
   /// How long a run waits, coils at 0 A, for an instrument that was unplugged: time to find the
   /// cable, and to plug it in again.
   Seconds absence_maximum{120.0};
@@ -142,9 +143,13 @@ struct BenchConfig {
   TurntableConfig turntable;
   GyroConfig gyro;
   BenchLimits limits;
+  std::vector<InterlockConfig> interlocks;  ///< load_bench puts the default ones where none are
   EstimateConfig estimates;
   SimulationConfig simulation;
 };
+
+/// The first moment of a day written YYYY-MM-DD; nothing when there is no such day.
+std::optional<std::chrono::sys_days> date_of(const std::string& text);
 
 /// Reads a bench and the device files that it names ("device": "../devices/x.json").
 /// Errors: kBadInput, one line with the file and the JSON pointer.

@@ -4,6 +4,7 @@
 #include "config/bench.hpp"
 #include "config/codec.hpp"
 #include "config/describe_device.hpp"
+#include "config/describe_interlock.hpp"
 
 namespace fogbench::config {
 
@@ -116,8 +117,6 @@ void describe(Visitor& v, BenchLimits& l) {
   v.optional("compensation_maximum_ut", l.compensation_maximum,
              "Largest ambient field to null along one axis; a sweep's current is checked with it.",
              at_least(0));
-  v.optional("sensor_disagreement_c", l.sensor_disagreement,
-             "A control sensor farther from the working ones is warned of.", above(0));
   v.optional("absence_maximum_s", l.absence_maximum,
              "How long a run waits for an instrument that was unplugged.", above(0));
   v.optional("run_time_maximum_s", l.run_time_maximum, "Longest run.", above(0));
@@ -207,6 +206,10 @@ void describe(Visitor& v, BenchConfig& b) {
   v.required("turntable", b.turntable, "Turns the gyro in azimuth.");
   v.required("gyro", b.gyro, "The gyro under test.");
   v.optional("limits", b.limits, "What no procedure may exceed here.");
+  v.optional("interlocks", b.interlocks,
+             "What may not be while a run goes on, and what is done when it is; without this list, "
+             "one of each kind.",
+             not_empty());
   v.optional("estimates", b.estimates, "How long things take here, for a plan's duration.");
   v.optional("simulation", b.simulation, "The true plant behind simulated instruments.");
 }

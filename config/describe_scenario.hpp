@@ -6,7 +6,7 @@
 
 namespace fogbench::config {
 
-constexpr std::array<EnumName<FaultKind>, 11> enum_names(FaultKind /*kind*/) {
+constexpr std::array<EnumName<FaultKind>, 12> enum_names(FaultKind /*kind*/) {
   return {{{"timeout", FaultKind::kTimeout},
            {"late_answer", FaultKind::kLateAnswer},
            {"silent_execution", FaultKind::kSilentExecution},
@@ -17,7 +17,8 @@ constexpr std::array<EnumName<FaultKind>, 11> enum_names(FaultKind /*kind*/) {
            {"stuck", FaultKind::kStuck},
            {"exception", FaultKind::kException},
            {"unplug", FaultKind::kUnplug},
-           {"slow_answer", FaultKind::kSlowAnswer}}};
+           {"slow_answer", FaultKind::kSlowAnswer},
+           {"open_circuit", FaultKind::kOpenCircuit}}};
 }
 
 template <class Visitor>

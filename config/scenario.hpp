@@ -48,7 +48,8 @@ enum class FaultKind {
   kStuck,
   kException,
   kUnplug,
-  kSlowAnswer
+  kSlowAnswer,
+  kOpenCircuit
 };
 
 /// An instrument's misbehaviour: from `at` on, for `duration`; or in the operations `at_operation`

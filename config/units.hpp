@@ -74,6 +74,8 @@ inline constexpr UnitSuffix kUnitSuffixes[] = {
     {"_w", "W"},
     {"_h", "h"},
     {"_s", "s"},
+    {"_days", "days"},
+    {"_percent", "%"},
 };
 
 /// The printed unit of a column or key name ("field_x_ut" -> "uT"); empty when it has none.

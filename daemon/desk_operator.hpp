@@ -16,6 +16,7 @@ class DeskOperator final : public drivers::Operator {
   /// Before the first run; the engine must outlive the last.
   void attach(procedures::RunEngine& engine) { engine_ = &engine; }
 
+  bool can_resume() const override { return true; }
   Result<bool> confirm(const std::string& prompt) override {
     if (engine_ == nullptr) return Error{ErrorCode::kDevice, "nobody can be asked yet: " + prompt};
     const std::uint64_t asked = desk_.ask(prompt);

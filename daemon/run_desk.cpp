@@ -77,7 +77,9 @@ RunDesk::Refused RunDesk::resume(const Person& by) {
   const Lock lock(mutex_);
   if (view_.run) {
     if (view_.run->abort_requested) return wrong_state("the run is being aborted");
-    if (!view_.run->pause_requested) return wrong_state("the run is not paused");
+    // An interlock may have paused it.
+    const bool paused = view_.run->progress.state == procedures::RunState::kPaused;
+    if (!view_.run->pause_requested && !paused) return wrong_state("the run is not paused");
     view_.run->pause_requested = false;
     if (engine_runs_) engine_->request_resume();
     note("resume", by);

@@ -96,6 +96,8 @@ class Operator {
  public:
   virtual ~Operator() = default;
   virtual Result<bool> confirm(const std::string& prompt) = 0;
+  /// Whether they can resume a run that has paused by itself.
+  virtual bool can_resume() const { return false; }
 };
 
 /// Good frames of the stream, one entry each in every vector. `index` counts frames since the

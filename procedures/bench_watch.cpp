@@ -56,9 +56,7 @@ Status BenchWatch::tick(Instant deadline) {
   const Instant now = clock_.now();
   if (now < next_reading_ || interrupted_()) return {};
   next_reading_ = std::max(next_reading_ + kPeriod, now);
-  const auto read = read_slow_instruments();
-  if (!read) return read;
-  return check_temperature();
+  return read_slow_instruments();
 }
 
 void BenchWatch::sleep_until(Instant deadline) {
@@ -157,16 +155,10 @@ bool BenchWatch::all_answer() const {
   return true;
 }
 
-Status BenchWatch::check_temperature() const {
-  const config::Celsius limit = config_.limits.temperature_maximum + kOvershoot;
-  for (const config::Celsius t : {row_.thermostat.working_1, row_.thermostat.working_2}) {
-    if (t > limit) {
-      return Error{ErrorCode::kLimit,
-                   fmt::format("thermostat: {:.2f} degC, the bench's limit is {} degC", t.value,
-                               config_.limits.temperature_maximum.value)};
-    }
-  }
-  return {};
+Observation BenchWatch::observed(const Commanded& commanded) const {
+  return {row_, commanded, bench_.gyro->statistics(),
+          drivers::to_seconds(clock_.now() - gyro_.last_taken),
+          std::chrono::floor<std::chrono::days>(clock_.wall_now())};
 }
 
 Status BenchWatch::event(const std::string& severity, const std::string& message,

@@ -4,10 +4,9 @@
 //
 // A read that fails is harmless: it is warned of once, the value is missing, and the next second
 // tries again. An instrument that stays silent for longer than kLongestOutage ends the run, one
-// that is unplugged after the bench's absence_maximum; so does a temperature beyond the bench's
-// limit. While the coils carry current nobody may leave unnoticed: an instrument that is unplugged
-// then interrupts the step at once. A reading that repeats an old time stamp is stale and counts as
-// failed: it never enters an average.
+// that is unplugged after the bench's absence_maximum. While the coils carry current nobody may
+// leave unnoticed: an instrument that is unplugged then interrupts the step at once. A reading that
+// repeats an old time stamp is stale and counts as failed: it never enters an average.
 
 #include <array>
 #include <deque>
@@ -19,6 +18,7 @@
 #include "config/bench.hpp"
 #include "drivers/clock.hpp"
 #include "drivers/instruments.hpp"
+#include "procedures/interlock_gauge.hpp"
 #include "procedures/recorder.hpp"
 
 namespace fogbench::procedures {
@@ -31,8 +31,6 @@ class BenchWatch {
   static constexpr config::Seconds kLongestOutage{30.0};
   /// How long the slow readings are kept: a window looks back to just before its start.
   static constexpr double kRecentS = 60.0;
-  /// How far above its limit a temperature may overshoot.
-  static constexpr config::Celsius kOvershoot{2.0};
 
   /// How often a sleep looks whether it is to be cut short: what an abort waits for, beyond the
   /// instrument that is being spoken to.
@@ -53,13 +51,15 @@ class BenchWatch {
   Status start();
 
   /// Sleeps until `deadline` or the next second, whichever is first, then drains the stream, and on
-  /// the second reads the slow instruments. Errors: kStore from the recorder, kLimit for a
-  /// temperature, the instrument's for an outage; kUnplugged at once while the field is guarded.
+  /// the second reads the slow instruments. Errors: kStore from the recorder, the instrument's
+  /// for an outage; kUnplugged at once while the field is guarded.
   Status tick(Instant deadline);
   /// What the last tick brought.
   const drivers::GyroBlock& frames() const { return frames_; }
   /// Null when the last tick read no slow instruments.
   const MonitorRow* new_row() const { return has_new_row_ ? &row_ : nullptr; }
+  /// The new row and what else the interlocks look at.
+  Observation observed(const Commanded& commanded) const;
   /// Of the last kRecentS seconds, the last tick's included.
   const std::deque<MonitorRow>& recent_rows() const { return recent_; }
 
@@ -93,7 +93,6 @@ class BenchWatch {
   /// Keeps count of the outage; an error when it has lasted too long or cannot be recorded.
   Status note(Outage& outage, const Status& outcome);
   static Status check_new(Outage& outage, Instant taken_at);
-  Status check_temperature() const;
 
   const config::BenchConfig& config_;
   drivers::Bench& bench_;

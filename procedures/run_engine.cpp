@@ -77,6 +77,7 @@ class RunEngine::Run {
   drivers::Clock::Instant started_, step_started_;
   std::size_t step_ = 0;
   std::string says_;
+  std::string paused_by_;  ///< the interlock that a pause is due to; empty for a person's
   int block_ = 0, block_tries_ = 0;
   int step_tries_ = 0;  ///< of a step outside any block
   std::size_t points_ = 0, block_points_ = 0;
@@ -149,22 +150,38 @@ Result<StepResult> RunEngine::Run::run_step(std::size_t index) {
 }
 
 Status RunEngine::Run::pause_if_asked() {
-  if (!engine_.pause_requested_) return {};
-  says_ = "paused before: " + plan_.steps[step_].says;
+  // Nobody's resume lifts what an interlock still holds.
+  if (!engine_.pause_requested_ && session_.holds_pause().empty()) {
+    paused_by_.clear();
+    return {};
+  }
+  says_ = fmt::format("paused before: {}{}{}", plan_.steps[step_].says,
+                      paused_by_.empty() ? "" : "; by ", paused_by_);
   step_started_ = engine_.clock_.now();
   const auto noted = watch_.event("info", says_);
   if (!noted) return noted;
   enter(RunEvent::kPause);
-  while (engine_.pause_requested_) {
-    auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
-    if (!ticked && ticked.error().code == ErrorCode::kUnplugged) {
-      ticked = await_return(ticked.error().message);
+  for (;;) {
+    while (engine_.pause_requested_) {
+      auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
+      if (!ticked && ticked.error().code == ErrorCode::kUnplugged) {
+        ticked = await_return(ticked.error().message);
+      }
+      while (!ticked && ticked.error().code == ErrorCode::kStore && engine_.waits_for_record_) {
+        ticked = await_record(ticked.error());
+      }
+      if (!ticked) return ticked;
     }
-    while (!ticked && ticked.error().code == ErrorCode::kStore && engine_.waits_for_record_) {
-      ticked = await_record(ticked.error());
+    const std::string held = session_.holds_pause();
+    if (held.empty()) break;
+    engine_.pause_requested_ = true;
+    auto refused = watch_.event("warning", "not resumed: " + held);
+    while (!refused && refused.error().code == ErrorCode::kStore && engine_.waits_for_record_) {
+      refused = await_record(refused.error());
     }
-    if (!ticked) return ticked;
+    if (!refused) return refused;
   }
+  paused_by_.clear();
   enter(RunEvent::kResume);
   return watch_.event("info", "resumed");
 }
@@ -281,7 +298,12 @@ Status RunEngine::Run::restart_block(const std::string& reason) {
 }
 
 Status RunEngine::Run::after_tick() {
-  report(says_);
+  if (std::string wanted = session_.take_pause(); !wanted.empty()) {
+    paused_by_ = std::move(wanted);
+    engine_.pause_requested_ = true;
+  }
+  // Before the first step there is nothing to tell.
+  if (!says_.empty()) report(says_);
   if (engine_.abort_requested_) return Error{ErrorCode::kAborted, "aborted on request"};
   const Seconds elapsed{to_seconds(engine_.clock_.now() - started_)};
   const Seconds limit = engine_.config_.limits.run_time_maximum;

@@ -14,15 +14,55 @@ namespace fogbench::procedures {
 using drivers::from_seconds;
 
 Status RunSession::start() {
-  const auto started = watch_.start();
+  auto started = watch_.start();
+  if (started) started = read_azimuth();
   if (!started) return started;
-  return read_azimuth();
+  starting_ = true;
+  do {
+    started = tick(watch_.now() + BenchWatch::kPeriod);
+  } while (started && (watch_.new_row() == nullptr || interlocks_.undecided()));
+  starting_ = false;
+  const auto violated = interlocks_.tripped();
+  if (!started || violated.empty()) return started;
+  return Error{ErrorCode::kLimit, fmt::format("refused to start: {}", fmt::join(violated, "; "))};
 }
 
 Status RunSession::tick(drivers::Clock::Instant deadline) {
   const auto ticked = watch_.tick(deadline);
   if (!ticked) return ticked;
+  const auto checked = check_interlocks();
+  if (!checked) return checked;
   return after_tick_();
+}
+
+Status RunSession::check_interlocks() {
+  if (watch_.new_row() == nullptr) return {};
+  Status outcome;
+  for (const InterlockChange& change : interlocks_.observe(watch_.observed(commanded()))) {
+    const auto acted = act_on(change);
+    if (!acted && (outcome || acted.error().code == ErrorCode::kStore)) outcome = acted;
+  }
+  return outcome;
+}
+
+Status RunSession::act_on(const InterlockChange& change) {
+  using config::InterlockAction;
+  const bool aborts = change.tripped && change.action == InterlockAction::kAbort;
+  const auto noted = watch_.event(aborts ? "error" : (change.tripped ? "warning" : "info"),
+                                  change.message, change.data_json);
+  if (!noted || !change.tripped || starting_) return noted;
+  if (aborts) return Error{ErrorCode::kLimit, change.message};
+  if (change.action == InterlockAction::kWarn) return {};
+  if (!operator_.can_resume()) {
+    return Error{ErrorCode::kLimit,
+                 change.message + "; the run is to pause, and nobody can resume it"};
+  }
+  pause_wanted_ = change.message;
+  return {};
+}
+
+std::string RunSession::holds_pause() const {
+  return fmt::format("{}", fmt::join(interlocks_.tripped(config::InterlockAction::kPause), "; "));
 }
 
 Status RunSession::tick_until(drivers::Clock::Instant deadline) {
@@ -145,24 +185,7 @@ Result<StepResult> RunSession::measure(Seconds duration, const PointLabels& labe
 Status RunSession::record(Point point) {
   point.test = step_->test;
   point.block = step_->block;
-  const auto recorded = on_point_(point);
-  if (!recorded || point.kind == PointKind::kTransient) return recorded;
-  return compare_sensors(point);
-}
-
-Status RunSession::compare_sensors(const Point& point) {
-  const double difference_c = point.temperature_control_c - point.temperature_c;
-  const double allowed_c = config_.limits.sensor_disagreement.value;
-  if (std::isnan(difference_c) || std::abs(difference_c) <= allowed_c) return {};
-  return watch_.event(
-      "warning",
-      fmt::format("the control sensor is {:.2f} degC from the working sensors, expected at most {} "
-                  "degC",
-                  difference_c, allowed_c),
-      nlohmann::json{{"control_c", point.temperature_control_c},
-                     {"working_c", point.temperature_c},
-                     {"allowed_c", allowed_c}}
-          .dump());
+  return on_point_(point);
 }
 
 }  // namespace fogbench::procedures

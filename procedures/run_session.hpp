@@ -10,6 +10,7 @@
 #include "config/bench.hpp"
 #include "drivers/instruments.hpp"
 #include "procedures/bench_watch.hpp"
+#include "procedures/interlocks.hpp"
 #include "procedures/measurement_window.hpp"
 #include "procedures/plan.hpp"
 #include "procedures/recorder.hpp"
@@ -38,14 +39,23 @@ class RunSession {
         bench_(bench),
         operator_(person),
         watch_(watch),
+        interlocks_(config),
         after_tick_(std::move(after_tick)),
         on_point_(std::move(on_point)) {}
 
+  /// The stream's first frame, the first readings, and the interlocks: kLimit when one of them is
+  /// violated already. Commands nothing.
   Status start();
+  /// kLimit for an interlock that aborts.
   Status tick(drivers::Clock::Instant deadline);
   /// kUnplugged when an instrument was gone that the step, or a field, depends on: the coils are to
   /// be switched off and the step begun again when it is back.
   Result<StepResult> run(const PlannedStep& step);
+
+  /// Why an interlock wants the run to pause, once; empty when none does.
+  std::string take_pause() { return std::exchange(pause_wanted_, {}); }
+  /// Interlocks that keep the run paused: not cleared yet. Empty when there are none.
+  std::string holds_pause() const;
 
   /// One try to bring the coils to 0 A, read back, output off; and to reach whatever the watch does
   /// not read. Done when it returns no error.
@@ -67,8 +77,12 @@ class RunSession {
   /// Measures one point and records it; up to kTries windows.
   Result<StepResult> measure(Seconds duration, const PointLabels& labels);
   Status record(Point point);
-  Status compare_sensors(const Point& point);
   Status tick_until(drivers::Clock::Instant deadline);
+
+  /// Looks at a new row: records what trips and clears, and does what it asks for.
+  Status check_interlocks();
+  Status act_on(const InterlockChange& change);
+  Commanded commanded() const;
 
   Status energise();
   Status set_currents(config::Ampere horizontal, config::Ampere vertical);
@@ -80,6 +94,9 @@ class RunSession {
   drivers::Bench& bench_;
   drivers::Operator& operator_;
   BenchWatch& watch_;
+  Interlocks interlocks_;
+  bool starting_ = false;  ///< what trips refuses the run
+  std::string pause_wanted_;
   AfterTick after_tick_;
   OnPoint on_point_;
   const PlannedStep* step_ = nullptr;
@@ -89,6 +106,7 @@ class RunSession {
   Degree azimuth_{0.0};
   bool energised_ = false;
   config::Ampere horizontal_, vertical_;  ///< as set
+  drivers::Clock::Instant currents_since_{};
   /// What the coils carried when they were first switched off; nothing when they carry it still.
   std::optional<std::array<config::Ampere, 2>> switched_off_;
   /// Currents that null the ambient field at this azimuth.

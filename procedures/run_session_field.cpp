@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "procedures/check_limits.hpp"
 #include "procedures/run_session.hpp"
@@ -24,13 +23,6 @@ constexpr std::size_t kFieldReadings = 3;
 constexpr std::chrono::milliseconds kFieldSettle{500};
 /// A turntable that misses by more has not turned.
 constexpr Degree kAzimuthTolerance{0.5};
-
-/// The measured field along the pairs' axes, up and north: x is up, y points north at azimuth 0 and
-/// z at 90 deg.
-std::array<double, 2> along_coils_ut(const std::array<double, 3>& field_ut, Degree azimuth) {
-  const double a = azimuth.value * std::numbers::pi / 180.0;
-  return {field_ut[0], field_ut[1] * std::cos(a) + field_ut[2] * std::sin(a)};
-}
 
 }  // namespace
 
@@ -134,6 +126,21 @@ Status RunSession::read_azimuth() {
   return {};
 }
 
+Commanded RunSession::commanded() const {
+  const MonitorRow* row = watch_.new_row();
+  Commanded now;
+  if (heating_ && heating_->mode != HeatingMode::kOff) now.target = heating_->target;
+  now.horizontal = horizontal_;
+  now.vertical = vertical_;
+  // Before the ambient field is nulled nobody knows what a current adds up to.
+  if (row != nullptr && energised_ && zero_ &&
+      row->field.taken_at >= currents_since_ + kFieldSettle) {
+    now.field_ut = {(horizontal_ - (*zero_)[0]).value * config_.coil_horizontal.field_ut_per_a,
+                    (vertical_ - (*zero_)[1]).value * config_.coil_vertical.field_ut_per_a};
+  }
+  return now;
+}
+
 Status RunSession::energise() {
   if (energised_) return {};
   const auto horizontal = bench_.coil_horizontal->enable();
@@ -143,6 +150,7 @@ Status RunSession::energise() {
   energised_ = true;
   watch_.guard_field(true);
   horizontal_ = vertical_ = Ampere{0.0};
+  currents_since_ = watch_.now();
   return {};
 }
 
@@ -160,10 +168,13 @@ Status RunSession::set_currents(Ampere horizontal, Ampere vertical) {
     if (done) present = wanted;
     return done;
   };
-  const auto done = set(config_.coil_horizontal, *bench_.coil_horizontal, horizontal, horizontal_,
-                        "coil_horizontal");
-  if (!done) return done;
-  return set(config_.coil_vertical, *bench_.coil_vertical, vertical, vertical_, "coil_vertical");
+  auto done = set(config_.coil_horizontal, *bench_.coil_horizontal, horizontal, horizontal_,
+                  "coil_horizontal");
+  if (done) {
+    done = set(config_.coil_vertical, *bench_.coil_vertical, vertical, vertical_, "coil_vertical");
+  }
+  currents_since_ = watch_.now();
+  return done;
 }
 
 Status RunSession::switch_off() {

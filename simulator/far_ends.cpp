@@ -76,7 +76,7 @@ Result<FarEnds> make_far_ends(const config::BenchConfig& config,
   }
   const auto supply = [&](const std::string& name, const config::CoilConfig& coil,
                           MagneticPhysics::Pair pair) -> Result<std::unique_ptr<ScpiFarEnd>> {
-    Result<InstrumentLine> line = lines.to(name, ScpiFarEnd::kFaults);
+    Result<InstrumentLine> line = lines.to(name, ScpiFarEnd::kSupplyFaults);
     if (!line) return line.error();
     return std::make_unique<ScpiFarEnd>(
         coil.device,

@@ -10,7 +10,7 @@ namespace {
 /// As scenario files spell them, in the enumeration's order.
 constexpr const char* kNames[] = {
     "timeout", "late_answer", "silent_execution", "bad_checksum", "bad_sequence", "garbage",
-    "nan",     "stuck",       "exception",        "unplug",       "slow_answer"};
+    "nan",     "stuck",       "exception",        "unplug",       "slow_answer",  "open_circuit"};
 
 const char* name_of(FaultKind kind) {
   return kNames[static_cast<std::size_t>(kind)];

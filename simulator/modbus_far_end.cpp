@@ -76,6 +76,7 @@ Status ModbusFarEnd::read_registers(std::uint16_t address, std::span<std::uint16
   line_.begin("read");
   last_exception_ = 0;
   if (Status s = line_.request(kTransaction, kTimeout); !s) return s;
+  line_.plant().open_heaters(line_.fault(FaultKind::kOpenCircuit));
   if (Status s = check_count(out.size()); !s) return s;
   for (std::size_t i = 0; i < out.size();) {
     const auto found = by_address_.find(static_cast<std::uint16_t>(address + i));

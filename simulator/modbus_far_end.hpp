@@ -23,7 +23,7 @@ class ModbusFarEnd final : public drivers::ModbusTransport {
       FaultKind::kTimeout,     FaultKind::kLateAnswer,  FaultKind::kSilentExecution,
       FaultKind::kBadChecksum, FaultKind::kBadSequence, FaultKind::kGarbage,
       FaultKind::kNan,         FaultKind::kStuck,       FaultKind::kException,
-      FaultKind::kUnplug,      FaultKind::kSlowAnswer};
+      FaultKind::kUnplug,      FaultKind::kSlowAnswer,  FaultKind::kOpenCircuit};
 
   ModbusFarEnd(const config::ModbusDevice& device, InstrumentLine line);
 

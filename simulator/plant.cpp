@@ -64,7 +64,7 @@ void Plant::rotate_to(double azimuth_deg) {
 
 void Plant::step() {
   ++steps_;
-  const HeaterPower power = thermostat_.power();
+  const HeaterPower power = heaters_open_ ? HeaterPower{} : thermostat_.power();
   thermal_.advance(power);
   thermostat_.advance(thermal_);
   magnetic_.advance();

@@ -47,6 +47,8 @@ class Plant {
   ThermostatController& thermostat() { return thermostat_; }
   const ThermostatController& thermostat() const { return thermostat_; }
   MagneticPhysics& magnetic() { return magnetic_; }
+  /// The heaters' circuit is open: the controller drives them in vain.
+  void open_heaters(bool open) { heaters_open_ = open; }
 
   /// Gyro axes.
   Vector3 field_ut() const;
@@ -82,6 +84,7 @@ class Plant {
   MagneticPhysics magnetic_;
   HiddenEffects effects_;
   NormalSource turntable_noise_;
+  bool heaters_open_ = false;
   double encoder_deg_ = 0.0;
   double encoder_target_deg_ = 0.0;
   double azimuth_error_deg_ = 0.0;

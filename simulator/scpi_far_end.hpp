@@ -29,6 +29,8 @@ class ScpiOutput {
   virtual double setpoint() const = 0;
   virtual double measure(const Plant& plant) = 0;
   virtual void switch_output(Plant& plant, bool on) = 0;
+  /// The circuit that it drives is open, or whole again.
+  virtual void open_circuit(Plant& /*plant*/, bool /*open*/) {}
 };
 
 /// One pair's bipolar current source: 15 bits and a sign; with the output off it programs zero.
@@ -45,6 +47,12 @@ class ScpiFarEnd final : public drivers::MessageTransport {
       FaultKind::kBadSequence, FaultKind::kGarbage,    FaultKind::kNan,
       FaultKind::kStuck,       FaultKind::kException,  FaultKind::kUnplug,
       FaultKind::kSlowAnswer};
+  /// Of a supply: a turntable's motor has no circuit that matters here.
+  static constexpr std::initializer_list<FaultKind> kSupplyFaults = {
+      FaultKind::kTimeout,     FaultKind::kLateAnswer, FaultKind::kSilentExecution,
+      FaultKind::kBadSequence, FaultKind::kGarbage,    FaultKind::kNan,
+      FaultKind::kStuck,       FaultKind::kException,  FaultKind::kUnplug,
+      FaultKind::kSlowAnswer,  FaultKind::kOpenCircuit};
 
   ScpiFarEnd(const config::ScpiDevice& device, std::unique_ptr<ScpiOutput> output,
              InstrumentLine line);

@@ -1,6 +1,7 @@
 // What the bench's two kinds of SCPI instruments drive: a coil pair's current, the turntable.
 
 #include <algorithm>
+#include <utility>
 
 #include "simulator/scpi_far_end.hpp"
 
@@ -40,10 +41,15 @@ class SupplyOutput final : public ScpiOutput {
     program(plant, setpoint_a_);
   }
 
+  /// Whatever the voltage, no current flows.
+  void open_circuit(Plant& plant, bool open) override {
+    if (std::exchange(open_, open) != open) program(plant, on_ ? setpoint_a_ : 0.0);
+  }
+
  private:
   void program(Plant& plant, double current_a) {
     before_a_ = output_a_;
-    output_a_ = quantise_current(current_a, full_scale_a_, bits_);
+    output_a_ = open_ ? 0.0 : quantise_current(current_a, full_scale_a_, bits_);
     changed_at_s_ = plant.now_s();
     // 16 time constants: settled to 1e-7 when the read-back becomes valid.
     plant.magnetic().program(pair_, output_a_, settle_s_ / 16.0);
@@ -55,6 +61,7 @@ class SupplyOutput final : public ScpiOutput {
   const double bits_;
   NormalSource noise_;
   bool on_ = false;
+  bool open_ = false;
   double setpoint_a_ = 0.0;
   double before_a_ = 0.0;
   double output_a_ = 0.0;

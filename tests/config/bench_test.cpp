@@ -76,6 +76,34 @@ INSTANTIATE_TEST_SUITE_P(
                 "/limits/temperature_minimum_c: found 60, expected less than"},
         Mistake{R"([{"op": "replace", "path": "/limits/temperature_maximum_c", "value": 71}])",
                 "expected at most the thermostat's target_maximum_c 70"},
+        Mistake{R"([{"op": "replace", "path": "/interlocks", "value": []}])",
+                "/interlocks: found [], expected a list that is not empty"},
+        Mistake{R"([{"op": "replace", "path": "/interlocks/0/all_of", "value": []}])",
+                "/interlocks/0/all_of: found [], expected a list that is not empty"},
+        Mistake{R"([{"op": "remove", "path": "/interlocks/1/all_of"}])",
+                "/interlocks/1: expected either \"all_of\" or \"any_of\", with its conditions"},
+        Mistake{
+            R"([{"op": "replace", "path": "/interlocks/3/all_of/0/kind", "value": "field"}])",
+            "/interlocks/3/all_of/0/kind: found \"field\", expected one of \"over_temperature\""},
+        Mistake{R"([{"op": "replace", "path": "/interlocks/3/all_of/0/clear_ut", "value": 16}])",
+                "/interlocks/3/all_of/0/clear_ut: found 16, expected at most trip_ut 15"},
+        Mistake{R"([{"op": "move", "from": "/interlocks/3/all_of/0/trip_ut",
+                     "path": "/interlocks/3/all_of/0/trip_t"}])",
+                "/interlocks/3/all_of/0/trip_t: unknown key; did you mean \"trip_ut\"?"},
+        Mistake{R"([{"op": "add", "path": "/interlocks/3/all_of/0/rise_c", "value": 1}])",
+                "/interlocks/3/all_of/0/rise_c: unknown key"},
+        Mistake{R"([{"op": "replace", "path": "/interlocks/3/action", "value": "stop"}])",
+                "/interlocks/3/action: found \"stop\", expected one of \"warn\", \"pause\""},
+        Mistake{R"([{"op": "replace", "path": "/interlocks/3/consecutive", "value": 0}])",
+                "/interlocks/3/consecutive: found 0, expected an integer"},
+        Mistake{R"([{"op": "replace", "path": "/interlocks/3/name", "value": "sensors"}])",
+                "/interlocks/3/name: found \"sensors\", expected another name than that of"},
+        Mistake{R"([{"op": "replace", "path": "/interlocks/0/action", "value": "warn"}])",
+                "/interlocks: no over_temperature by itself aborts above temperature_maximum_c 60"},
+        Mistake{R"([{"op": "replace", "path": "/interlocks/0/all_of/0/trip_c", "value": 62.5}])",
+                "/interlocks: no over_temperature by itself"},
+        Mistake{R"([{"op": "replace", "path": "/interlocks/0/consecutive", "value": 11}])",
+                "expected one with trip_c 62 and consecutive 10 at most"},
         Mistake{R"([{"op": "add", "path": "/simulation/thermal/dead_time_s", "value": 1e300}])",
                 "/simulation/thermal/dead_time_s: found 1e+300, expected a number from 0 to 3600"},
         Mistake{R"([{"op": "add", "path": "/simulation/magnetic/ambient_steps_per_h",
@@ -115,6 +143,36 @@ TEST(LoadBench, CertificateOfTheBenchReplacesTheDeviceFilesCalibration) {
   EXPECT_EQ(
       load_bench(kReady / "benches/simulated.json")->magnetometer.device.calibration_offset_ut[0],
       0.022);
+}
+
+TEST(LoadBench, WithoutInterlocksHasOneOfEachKindForItsOwnLimits) {
+  ChangedFile file;
+  const auto bench =
+      load_bench(file.patch("benches/simulated.json", R"([{"op": "remove", "path": "/interlocks"},
+        {"op": "replace", "path": "/limits/temperature_maximum_c", "value": 50}])"));
+  ASSERT_TRUE(bench) << bench.error().message;
+  ASSERT_EQ(bench->interlocks.size(), interlock_kinds().size());
+  for (std::size_t i = 0; i < interlock_kinds().size(); ++i) {
+    EXPECT_EQ(bench->interlocks[i].all_of.at(0).kind, interlock_kinds()[i].kind);
+  }
+  EXPECT_EQ(bench->interlocks[0].all_of[0].trip, 52.0);
+  EXPECT_EQ(bench->interlocks[0].action, InterlockAction::kAbort);
+}
+
+TEST(LoadBench, ReadsAnInterlockOfSeveralConditions) {
+  ChangedFile file;
+  const auto bench = load_bench(
+      file.patch("benches/simulated.json", R"([{"op": "add", "path": "/interlocks/-", "value":
+        {"name": "either", "consecutive": 7, "action": "pause", "any_of": [
+          {"kind": "heater_without_effect", "trip_s": 600, "clear_s": 0, "rise_c": 0.3},
+          {"kind": "calibration_overdue", "trip_days": -7, "clear_days": -30}]}}])"));
+  ASSERT_TRUE(bench) << bench.error().message;
+  const InterlockConfig& either = bench->interlocks.back();
+  EXPECT_EQ(either.consecutive, 7);
+  ASSERT_EQ(either.conditions().size(), 2U);
+  EXPECT_EQ(either.any_of[0].rise, Celsius{0.3});
+  EXPECT_EQ(either.any_of[0].near_target, Celsius{2.0});
+  EXPECT_EQ(either.any_of[1].trip, -7.0);
 }
 
 /// The certificate takes the simulated magnetometer's errors of tenths of a percent down to 0.01 %

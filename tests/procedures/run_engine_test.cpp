@@ -192,25 +192,6 @@ TEST(RunEngine, RefusesASweepWhereTheTurntableDoesNotStandAsPlanned) {
               HasSubstr("azimuth 45.00 deg"));
 }
 
-TEST(RunEngine, WarnsWhenTheControlSensorDisagrees) {
-  Rig rig;
-  rig.plant.control_offset_c = 1.5;
-  EXPECT_EQ(rig.summary_of({average()}).end.outcome, RunOutcome::kCompleted);
-  EXPECT_TRUE(rig.log.has_event("control sensor is 1.50 degC from"));
-  Rig agreeing;
-  agreeing.summary_of({average()});
-  EXPECT_FALSE(agreeing.log.has_event("control sensor"));
-}
-
-TEST(RunEngine, StopsHeatingBeyondTheBenchsLimit) {
-  Rig rig;
-  rig.plant.carrier_c = 62.5;
-  rig.plant.ambient_c = 62.5;
-  const auto summary = rig.summary_of({average()});
-  EXPECT_EQ(summary.end.outcome, RunOutcome::kFailed);
-  EXPECT_THAT(summary.end.reason, HasSubstr("the bench's limit is 60 degC"));
-}
-
 TEST(RunEngine, StopsARunThatLastsTooLong) {
   Rig rig;
   const Plan plan = rig.plan({heat(31.0), settle(5000.0)});

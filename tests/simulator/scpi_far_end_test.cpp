@@ -147,6 +147,25 @@ TEST(ScpiFarEnd, TheTurntableMovesAtItsSpeedAndTakesTheGyroAlong) {
   EXPECT_EQ(ask(table, "SYST:ERR?"), "-222,\"Data out of range\"");
 }
 
+TEST(ScpiFarEnd, DrivesNoCurrentThroughAnOpenCircuitWhateverIsSet) {
+  config::ScenarioConfig scenario;
+  scenario.faults = {fault("coil_vertical", FaultKind::kOpenCircuit, 10.0, 10.0)};
+  TestFarEnds bench(test_bench(), scenario);
+  auto& supply = *bench.ends.coil_vertical;
+  const double ambient = field_y(bench);
+  ASSERT_TRUE(supply.write("CURR 1.5"));
+  ASSERT_TRUE(supply.write("OUTP ON"));
+  bench.run_for(11.0);
+  EXPECT_DOUBLE_EQ(ask_number(supply, "CURR?"), 1.5);
+  bench.run_for(1.0);
+  EXPECT_NEAR(ask_number(supply, "MEAS:CURR?"), 0.0, 1e-3);
+  EXPECT_NEAR(field_y(bench), ambient, 0.02);
+  bench.run_for(10.0);
+  ask(supply, "CURR?");
+  bench.run_for(1.0);
+  EXPECT_NEAR(ask_number(supply, "MEAS:CURR?"), 1.5, 1e-3);
+}
+
 TEST(ScpiFarEnd, FailsInTheWaysOfTheScenario) {
   const auto during = [](FaultKind kind) {
     config::ScenarioConfig scenario;
