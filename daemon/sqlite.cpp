@@ -172,6 +172,9 @@ Result<std::unique_ptr<Database>> Database::open(const fs::path& path, Mode mode
   std::error_code error;
   if (mode != Mode::kCreate) {
     const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::none) {  // nobody may know: no permission, above all
+      return Error{ErrorCode::kBadInput, fmt::format("{}: {}", path.string(), error.message())};
+    }
     if (!fs::exists(status)) {
       return Error{ErrorCode::kBadInput, fmt::format("{}: no such run log", path.string())};
     }

@@ -37,6 +37,8 @@ TEST(Store, RefusesWhatIsNotARunLog) {
   expect_refused(folder.file("text.db", "hello"), ErrorCode::kBadInput, "not a");
   expect_refused(folder.file("empty.db", ""), ErrorCode::kBadInput, "not a run log");
   expect_refused(folder.path(), ErrorCode::kBadInput, "not a regular file");
+  std::filesystem::create_symlink(folder / "loop.db", folder / "loop.db");
+  expect_refused(folder / "loop.db", ErrorCode::kBadInput, "symbolic links");
   EXPECT_EQ(read_text(folder / "junk.db"), junk);
 }
 
