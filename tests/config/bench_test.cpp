@@ -77,9 +77,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{R"([{"op": "replace", "path": "/limits/temperature_maximum_c", "value": 71}])",
                 "expected at most the thermostat's target_maximum_c 70"},
         Mistake{R"([{"op": "replace", "path": "/interlocks", "value": []}])",
-                "/interlocks: found [], expected a list that is not empty"},
+                "/interlocks: found an empty list, expected a list that is not empty"},
         Mistake{R"([{"op": "replace", "path": "/interlocks/0/all_of", "value": []}])",
-                "/interlocks/0/all_of: found [], expected a list that is not empty"},
+                "/interlocks/0/all_of: found an empty list, expected a list that is not empty"},
         Mistake{R"([{"op": "remove", "path": "/interlocks/1/all_of"}])",
                 "/interlocks/1: expected either \"all_of\" or \"any_of\", with its conditions"},
         Mistake{

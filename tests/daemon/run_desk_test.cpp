@@ -216,5 +216,19 @@ TEST_F(RunDeskTest, TheQueueHasAnEndAndJobsCanBeTakenOut) {
   EXPECT_EQ(desk_.queue().size(), RunDesk::kMostJobs - 1);
 }
 
+TEST(RunDesk, APersonResumesWhatAnInterlockHasPaused) {
+  RunDesk desk;
+  const Person alice{"alice", 1000};
+  ASSERT_TRUE(std::holds_alternative<std::uint64_t>(desk.enqueue({}, alice)));
+  ASSERT_TRUE(desk.next_job());
+  procedures::Progress now;
+  now.state = procedures::RunState::kRunning;
+  desk.progressed(now);
+  ASSERT_TRUE(desk.resume(alice)) << "nobody has paused it";
+  now.state = procedures::RunState::kPaused;
+  desk.progressed(now);
+  EXPECT_FALSE(desk.resume(alice));
+}
+
 }  // namespace
 }  // namespace fogbench::daemon

@@ -44,8 +44,8 @@ TEST(LostRecord, WhateverCallFailsTheRunWaitsAndLosesNothing) {
   undisturbed.summary_of(everything());
   for (const std::string call :
        {"step_started", "step_ended", "event", "point", "monitor", "gyro_samples"}) {
-    // The very first frames are the start of the run: without a record it does not begin.
-    for (const int at : {call == "gyro_samples" ? 2 : 1, 3, 6}) {
+    // The first frames and readings are the start of the run: without a record it does not begin.
+    for (const int at : {call == "gyro_samples" || call == "monitor" ? 2 : 1, 3, 6}) {
       const std::string where = call + " " + std::to_string(at);
       Rig rig;
       rig.engine.wait_for_record();
