@@ -6,11 +6,6 @@ target_compile_options(fogbench_warnings INTERFACE
   # A designated initialiser leaves the other members at their defaults on purpose.
   -Wno-missing-field-initializers)
 
-# Under a sanitizer g++ 12 takes its own <regex> and <optional> for uninitialised (GCC bug 105562).
-if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
-  target_compile_options(fogbench_warnings INTERFACE -Wno-maybe-uninitialized)
-endif()
-
 # fogbench_library(<folder> SOURCES a.cpp ... PUBLIC targets... PRIVATE targets...)
 # declares the static library of one room, fogbench::<folder>.
 function(fogbench_library folder)

@@ -25,7 +25,8 @@ constexpr std::array<TypeInfo, 7> kTypes{{
     {"int16", 2, -32768.0, 32767.0},
     {"uint32", 4, 0.0, 4294967295.0},
     {"int32", 4, -2147483648.0, 2147483647.0},
-    {"float32", 4, -std::numeric_limits<float>::max(), std::numeric_limits<float>::max()},
+    {"float32", 4, -static_cast<double>(std::numeric_limits<float>::max()),
+     static_cast<double>(std::numeric_limits<float>::max())},
 }};
 
 const TypeInfo& info(NumberType type) {

@@ -111,8 +111,9 @@ Status Design::add_effect(const config::ModelTerm& term, const Effect& effect) {
     }
   }
   for (const auto& [name, value] : term.parameters) {
-    const bool known = std::any_of(info.parameters.begin(), info.parameters.end(),
-                                   [&](const InnerParameter& p) { return p.name == name; });
+    const bool known =
+        std::any_of(info.parameters.begin(), info.parameters.end(),
+                    [&name = name](const InnerParameter& p) { return p.name == name; });
     if (!known && info.parameters.empty()) {
       return bad_term(term, fmt::format("found the parameter '{}', expected none", name));
     }

@@ -55,7 +55,7 @@ struct Solution {
 class Problem {
  public:
   Problem(const NoiseShapes& shapes, const MatrixXd& x, const VectorXd& y)
-      : shapes_(shapes), kept_(independent_columns(x, x.cols(), kRankThreshold)) {
+      : kept_(independent_columns(x, x.cols(), kRankThreshold)) {
     joined_.resize(x.rows(), static_cast<Index>(kept_.size()) + 1);
     for (std::size_t i = 0; i < kept_.size(); ++i) {
       joined_.col(static_cast<Index>(i)) = x.col(kept_[i]);
@@ -123,7 +123,6 @@ class Problem {
     return s.r.diagonal().head(rank()).array().abs().log().sum();
   }
 
-  const NoiseShapes& shapes_;
   std::vector<Index> kept_;
   MatrixXd joined_;
   double nu_ = 0.0;

@@ -82,7 +82,7 @@ void add_branches(std::vector<Branch>& out, const std::vector<Step>& steps, doub
 
 std::vector<Branch> branches_of(const Signals& signals, std::string_view variable) {
   const Signals::View values = signals.signal(variable);
-  double low = INFINITY, high = -INFINITY;
+  double low = HUGE_VAL, high = -HUGE_VAL;
   for (double value : values) {
     if (!std::isfinite(value)) continue;
     low = std::min(low, value);

@@ -179,8 +179,9 @@ class CsvReader {
 
   Status name_columns() {
     for (const auto& [wanted, found] : renames_) {
-      const auto source = std::find_if(columns_.begin(), columns_.end(),
-                                       [&](const Column& c) { return c.name == found; });
+      const auto source =
+          std::find_if(columns_.begin(), columns_.end(),
+                       [&found = found](const Column& c) { return c.name == found; });
       if (source == columns_.end()) {
         return bad_line(
             fmt::format("column {}: not found, expected it because {} is to be read "

@@ -23,7 +23,7 @@ constexpr std::array<Driver, 4> kDrivers = {
     {{"field_x_ut", 5.0}, {"field_y_ut", 5.0}, {"field_z_ut", 5.0}, {"temperature_c", 1.0}}};
 
 bool moves(const RowValues& values, double least_range) {
-  double low = INFINITY, high = -INFINITY;
+  double low = HUGE_VAL, high = -HUGE_VAL;
   for (double value : values) {
     if (!std::isfinite(value)) continue;
     low = std::min(low, value);

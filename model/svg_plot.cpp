@@ -40,7 +40,7 @@ bool is_finite(const std::pair<double, double>& point) {
 }
 
 struct Extent {
-  double x_low = INFINITY, x_high = -INFINITY, y_low = INFINITY, y_high = -INFINITY;
+  double x_low = HUGE_VAL, x_high = -HUGE_VAL, y_low = HUGE_VAL, y_high = -HUGE_VAL;
   bool empty() const { return !(x_low <= x_high); }
 };
 

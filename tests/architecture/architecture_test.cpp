@@ -22,7 +22,7 @@ const Tree& tree() {
 
 TEST(Architecture, TheScannerSeesEveryRoom) {
   for (const auto& [room, seen] : kMaySee) {
-    EXPECT_TRUE(std::any_of(tree().begin(), tree().end(), [&](const SourceFile& file) {
+    EXPECT_TRUE(std::any_of(tree().begin(), tree().end(), [&room = room](const SourceFile& file) {
       return file.is_cpp() && file.folder() == room;
     })) << room;
   }

@@ -160,7 +160,7 @@ TEST(FrameParser, AFalseHeaderInThePayloadChangesNothing) {
   Bytes bytes;
   for (int i = 0; i < 5; ++i) {
     Bytes frame = kvh_frame(i, i);
-    for (const std::size_t at : {4, 16, 24}) {
+    for (const std::size_t at : {4U, 16U, 24U}) {
       std::copy(device.header.begin(), device.header.end(),
                 frame.begin() + static_cast<std::ptrdiff_t>(at));
     }
