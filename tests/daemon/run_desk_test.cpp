@@ -219,7 +219,7 @@ TEST_F(RunDeskTest, TheQueueHasAnEndAndJobsCanBeTakenOut) {
 TEST(RunDesk, APersonResumesWhatAnInterlockHasPaused) {
   RunDesk desk;
   const Person alice{"alice", 1000};
-  ASSERT_TRUE(std::holds_alternative<std::uint64_t>(desk.enqueue({}, alice)));
+  ASSERT_TRUE(std::holds_alternative<std::uint64_t>(desk.enqueue({}, {}, alice)));
   ASSERT_TRUE(desk.next_job());
   procedures::Progress now;
   now.state = procedures::RunState::kRunning;
