@@ -1,0 +1,91 @@
+#include "daemon/passport.hpp"
+
+#include <fmt/args.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+
+namespace fogbench::daemon {
+namespace {
+
+/// A text keeps its last full stop to itself.
+std::string without_stop(std::string sentence) {
+  while (sentence.ends_with('.')) sentence.pop_back();
+  return sentence;
+}
+
+void remark_calibrations(const RunProvenance& made, std::vector<Remark>& out) {
+  const std::string number = std::to_string(made.run.run);
+  const std::string today = made.run.header.started_at.substr(0, 10);
+  std::vector<std::string> overdue, undated;
+  for (const auto& instrument : made.instruments) {
+    if (instrument.role == "gyro") continue;  // it is what is being tested
+    if (instrument.calibration_due.empty()) {
+      undated.push_back(instrument.role);
+    } else if (instrument.calibration_due < today) {
+      overdue.push_back(fmt::format("{} ({})", instrument.role, instrument.calibration_due));
+    }
+  }
+  if (!overdue.empty()) {
+    out.push_back({Text::kRemarkOverdue, {number, fmt::format("{}", fmt::join(overdue, ", "))}});
+  }
+  if (!undated.empty()) {
+    out.push_back(
+        {Text::kRemarkNoCalibration, {number, fmt::format("{}", fmt::join(undated, ", "))}});
+  }
+}
+
+std::vector<Remark> remarks_on(const Acceptance& acceptance) {
+  std::vector<Remark> out;
+  for (const RunProvenance& made : acceptance.runs) {
+    const procedures::RunHeader& header = made.run.header;
+    const std::string number = std::to_string(made.run.run);
+    if (!made.run.completed()) {
+      out.push_back({Text::kRemarkUnfinished, {number, made.run.outcome()}});
+    }
+    if (!made.raw_data_intact) out.push_back({Text::kRemarkRawData, {number}});
+    if (!header.scenario_json.empty()) out.push_back({Text::kRemarkSimulated, {number}});
+    if (header.gyro_serial_number.empty()) out.push_back({Text::kRemarkNoGyro, {number}});
+    if (header.operator_name.empty()) out.push_back({Text::kRemarkNoOperator, {number}});
+    remark_calibrations(made, out);
+  }
+  for (const TestResults& test : acceptance.tests) {
+    if (!test.fit_problem.empty()) {
+      out.push_back({Text::kRemarkNoFit, {test.name, without_stop(test.fit_problem)}});
+    }
+    if (!test.fit) continue;
+    for (const std::string& warning : test.fit->warnings) {
+      out.push_back({Text::kRemarkFit, {test.name, without_stop(warning)}});
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<Passport> make_passport(Acceptance acceptance, config::LimitsConfig limits,
+                               std::string issued_at, std::string software_version) {
+  auto judged = model::judge_results(acceptance.measured, limits);
+  if (!judged) return judged.error();
+  for (const RunProvenance& made : acceptance.runs) {
+    if (made.run.completed() && made.raw_data_intact) continue;
+    judged->overall = model::worst_of(judged->overall, model::Conformity::kIndeterminate);
+  }
+  std::vector<Remark> remarks = remarks_on(acceptance);
+  return Passport{std::move(acceptance), std::move(limits),    std::move(*judged),
+                  std::move(remarks),    std::move(issued_at), std::move(software_version)};
+}
+
+std::string remark_text(const Remark& remark, Language language) {
+  fmt::dynamic_format_arg_store<fmt::format_context> values;
+  for (const std::string& value : remark.values) {
+    // An outcome among the values has a name in each language.
+    const bool outcome = remark.text == Text::kRemarkUnfinished && &value != &remark.values.front();
+    values.push_back(outcome ? std::string(outcome_name(value, language)) : value);
+  }
+  const std::string_view pattern = text(remark.text, language);
+  return fmt::vformat(fmt::string_view(pattern.data(), pattern.size()), values);
+}
+
+}  // namespace fogbench::daemon

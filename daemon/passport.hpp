@@ -1,0 +1,46 @@
+#pragma once
+// A gyro's passport: what was measured in its runs, held against limits, with everything that made
+// the numbers. As JSON (without a language) and as one page that prints; daemon/passport.md
+// describes both.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "config/limits.hpp"
+#include "daemon/acceptance.hpp"
+#include "daemon/passport_texts.hpp"
+
+namespace fogbench::daemon {
+
+/// What a reader must know before he trusts the verdict: a text and what stands in its places.
+struct Remark {
+  Text text;
+  std::vector<std::string> values;
+};
+
+struct Passport {
+  Acceptance acceptance;
+  config::LimitsConfig limits;
+  model::Judged judged;
+  std::vector<Remark> remarks;
+  std::string issued_at;  ///< ISO 8601, UTC
+  std::string software_version;
+};
+
+/// Judges and remarks. The verdict is no better than indeterminate when a run was not completed or
+/// its raw data are not as they were written. Errors: as judge_results.
+Result<Passport> make_passport(Acceptance acceptance, config::LimitsConfig limits,
+                               std::string issued_at, std::string software_version);
+
+std::string remark_text(const Remark& remark, Language language);
+
+/// The verdict alone.
+nlohmann::ordered_json verdict_json(const Passport& passport);
+nlohmann::ordered_json passport_json(const Passport& passport);
+std::string passport_html(const Passport& passport, Language language);
+
+/// The plots of the page, with their legend.
+std::string passport_plots(const Acceptance& acceptance, Language language);
+
+}  // namespace fogbench::daemon
