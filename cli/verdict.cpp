@@ -74,7 +74,8 @@ void print_text(const daemon::Passport& passport, const VerdictOptions& options)
              passport.acceptance.gyro(), passport.limits.name, judged.coverage_factor,
              results_table(judged), repeats_table(judged));
   for (const model::RunChange& change : passport.acceptance.changes) {
-    fmt::print("\n{}\n", change.says);
+    fmt::print("\n{}\n",
+               daemon::change_text(change, judged.coverage_factor, daemon::Language::kEnglish));
   }
   if (!passport.remarks.empty()) fmt::print("\n");
   for (const daemon::Remark& remark : passport.remarks) {

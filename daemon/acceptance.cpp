@@ -23,11 +23,11 @@ constexpr auto kPer100Ut = "deg/h per 100 uT";
 
 /// The ready model of what these points excite; empty when it is nothing.
 std::string model_for(const std::vector<Point>& points) {
-  const auto any = [&](double Point::*column) {
-    return std::any_of(points.begin(), points.end(),
-                       [column](const Point& p) { return std::isfinite(p.*column); });
-  };
-  const bool heated = any(&Point::target_c), swept = any(&Point::field_set_ut);
+  const bool heated = std::any_of(points.begin(), points.end(),
+                                  [](const Point& point) { return point.heater_w > 0.0; });
+  const bool swept = std::any_of(points.begin(), points.end(), [](const Point& point) {
+    return std::isfinite(point.field_set_ut);
+  });
   if (heated && swept) return "general";
   return heated ? "thermal" : swept ? "magnetic" : "";
 }
@@ -170,6 +170,17 @@ Result<RunProvenance> provenance_of(RunLogReader& reader, std::int64_t number) {
   return made;
 }
 
+/// On the run's own axis of time, which is that of its raw stream.
+Result<std::optional<QuietStretch>> own_stretch(RunLogReader& reader, std::int64_t run) {
+  const auto stored = reader.points(run);
+  if (!stored) return stored.error();
+  std::vector<Point> points;
+  for (const StoredPoint& point : *stored) {
+    if (point.void_because.empty()) points.push_back(point.point);
+  }
+  return quiet_stretch(points);
+}
+
 /// The run's tests and noise; `several` runs have their number in the tests' names.
 Status add_run(RunLogReader& reader, std::int64_t number, bool several,
                const AcceptanceOptions& options, Acceptance& out) {
@@ -200,7 +211,9 @@ Status add_run(RunLogReader& reader, std::int64_t number, bool several,
     out.tests.push_back(std::move(*test));
     of_test.clear();
   }
-  const auto terms = read_noise_terms(reader, run.run, quiet_stretch(*points));
+  const auto stretch = own_stretch(reader, number);
+  if (!stretch) return stretch.error();
+  const auto terms = read_noise_terms(reader, run.run, *stretch);
   if (!terms) return terms.error();
   if (*terms) {
     out.noise.push_back(**terms);

@@ -1,10 +1,12 @@
 #include "daemon/passport.hpp"
 
-#include <fmt/args.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <utility>
+
+#include "config/rounding.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -27,13 +29,8 @@ void remark_calibrations(const RunProvenance& made, std::vector<Remark>& out) {
       overdue.push_back(fmt::format("{} ({})", instrument.role, instrument.calibration_due));
     }
   }
-  if (!overdue.empty()) {
-    out.push_back({Text::kRemarkOverdue, {number, fmt::format("{}", fmt::join(overdue, ", "))}});
-  }
-  if (!undated.empty()) {
-    out.push_back(
-        {Text::kRemarkNoCalibration, {number, fmt::format("{}", fmt::join(undated, ", "))}});
-  }
+  if (!overdue.empty()) out.push_back({Text::kRemarkOverdue, number, overdue});
+  if (!undated.empty()) out.push_back({Text::kRemarkNoCalibration, number, undated});
 }
 
 std::vector<Remark> remarks_on(const Acceptance& acceptance) {
@@ -42,21 +39,21 @@ std::vector<Remark> remarks_on(const Acceptance& acceptance) {
     const procedures::RunHeader& header = made.run.header;
     const std::string number = std::to_string(made.run.run);
     if (!made.run.completed()) {
-      out.push_back({Text::kRemarkUnfinished, {number, made.run.outcome()}});
+      out.push_back({Text::kRemarkUnfinished, number, {made.run.outcome()}});
     }
-    if (!made.raw_data_intact) out.push_back({Text::kRemarkRawData, {number}});
-    if (!header.scenario_json.empty()) out.push_back({Text::kRemarkSimulated, {number}});
-    if (header.gyro_serial_number.empty()) out.push_back({Text::kRemarkNoGyro, {number}});
-    if (header.operator_name.empty()) out.push_back({Text::kRemarkNoOperator, {number}});
+    if (!made.raw_data_intact) out.push_back({Text::kRemarkRawData, number, {}});
+    if (!header.scenario_json.empty()) out.push_back({Text::kRemarkSimulated, number, {}});
+    if (header.gyro_serial_number.empty()) out.push_back({Text::kRemarkNoGyro, number, {}});
+    if (header.operator_name.empty()) out.push_back({Text::kRemarkNoOperator, number, {}});
     remark_calibrations(made, out);
   }
   for (const TestResults& test : acceptance.tests) {
     if (!test.fit_problem.empty()) {
-      out.push_back({Text::kRemarkNoFit, {test.name, without_stop(test.fit_problem)}});
+      out.push_back({Text::kRemarkNoFit, test.name, {without_stop(test.fit_problem)}});
     }
     if (!test.fit) continue;
     for (const std::string& warning : test.fit->warnings) {
-      out.push_back({Text::kRemarkFit, {test.name, without_stop(warning)}});
+      out.push_back({Text::kRemarkFit, test.name, {without_stop(warning)}});
     }
   }
   return out;
@@ -78,14 +75,26 @@ Result<Passport> make_passport(Acceptance acceptance, config::LimitsConfig limit
 }
 
 std::string remark_text(const Remark& remark, Language language) {
-  fmt::dynamic_format_arg_store<fmt::format_context> values;
-  for (const std::string& value : remark.values) {
-    // An outcome among the values has a name in each language.
-    const bool outcome = remark.text == Text::kRemarkUnfinished && &value != &remark.values.front();
-    values.push_back(outcome ? std::string(outcome_name(value, language)) : value);
+  std::vector<std::string> about;
+  for (const std::string& thing : remark.about) {
+    const std::size_t bracket = std::min(thing.find(" ("), thing.size());
+    about.push_back(remark.text == Text::kRemarkUnfinished
+                        ? std::string(outcome_name(thing, language))
+                        : std::string(role_name(thing.substr(0, bracket), language)) +
+                              thing.substr(bracket));
   }
-  const std::string_view pattern = text(remark.text, language);
-  return fmt::vformat(fmt::string_view(pattern.data(), pattern.size()), values);
+  return fmt::format(fmt::runtime(text(remark.text, language)), remark.of, fmt::join(about, "; "));
+}
+
+std::string change_text(const model::RunChange& change, double coverage_factor, Language language) {
+  const config::Rounded scale =
+      config::rounded(change.common_scale, coverage_factor * change.scale_standard_error);
+  const std::string p =
+      change.p_repeat < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.2g}", change.p_repeat);
+  return fmt::format(fmt::runtime(text(Text::kChange, language)), change.run_a, change.run_b,
+                     localised(scale.value, language), localised(scale.uncertainty, language),
+                     localised(fmt::format("{:.1f}", change.angle_deg), language),
+                     localised(p, language));
 }
 
 }  // namespace fogbench::daemon

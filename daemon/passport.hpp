@@ -13,10 +13,12 @@
 
 namespace fogbench::daemon {
 
-/// What a reader must know before he trusts the verdict: a text and what stands in its places.
+/// What a reader must know before he trusts the verdict: a text with a run or test, and what it is
+/// about: instruments by role, with a date in brackets, an outcome, or a sentence.
 struct Remark {
   Text text;
-  std::vector<std::string> values;
+  std::string of;
+  std::vector<std::string> about;
 };
 
 struct Passport {
@@ -34,6 +36,8 @@ Result<Passport> make_passport(Acceptance acceptance, config::LimitsConfig limit
                                std::string issued_at, std::string software_version);
 
 std::string remark_text(const Remark& remark, Language language);
+/// `coverage_factor` of the printed uncertainty.
+std::string change_text(const model::RunChange& change, double coverage_factor, Language language);
 
 /// The verdict alone.
 nlohmann::ordered_json verdict_json(const Passport& passport);

@@ -51,8 +51,8 @@ class Origin : public PassportWriter {
     fact(Text::kProcedure, header.procedure);
     fact(Text::kBench, header.bench);
     if (header.seed) fact(Text::kSeed, std::to_string(*header.seed));
-    fact(Text::kStarted, header.started_at);
-    fact(Text::kEnded, run.end ? run.end->ended_at : "");
+    fact(Text::kStarted, date(header.started_at));
+    fact(Text::kEnded, run.end ? date(run.end->ended_at) : "");
     fact(Text::kOutcome, std::string(outcome_name(run.outcome(), language_)));
     fact(Text::kSoftware, "fogbench " + header.software_version);
     fact(Text::kConfiguration,
@@ -78,10 +78,10 @@ class Origin : public PassportWriter {
           6);
     for (const RunProvenance& made : acceptance_.runs) {
       for (const procedures::InstrumentRecord& i : made.instruments) {
-        const auto date = [](const std::string& d) { return d.empty() ? "&ndash;" : escaped(d); };
+        const auto stated = [](const std::string& d) { return d.empty() ? "&ndash;" : escaped(d); };
         row({std::to_string(made.run.run), std::string(role_name(i.role, language_)),
-             escaped(i.identity), escaped(i.serial_number), date(i.calibrated_on),
-             date(i.calibration_due)});
+             escaped(i.identity), escaped(i.serial_number), stated(i.calibrated_on),
+             stated(i.calibration_due)});
       }
     }
     end_table();
@@ -93,8 +93,8 @@ class Origin : public PassportWriter {
     out_ += "<table class=\"signatures\">\n";
     for (const Text who : {Text::kTestedBy, Text::kCheckedBy, Text::kCustomer}) {
       out_ += fmt::format(
-          "<tr><td>{}</td><td class=\"line\"></td><td class=\"line\"></td><td "
-          "class=\"line\"></td></tr>\n<tr class=\"under\"><td></td><td>{}</td><td>{}</td>"
+          "<tr><td>{}</td><td><div></div></td><td><div></div></td><td><div></div></td></tr>\n"
+          "<tr class=\"under\"><td></td><td>{}</td><td>{}</td>"
           "<td>{}</td></tr>\n",
           say(who), say(Text::kName), say(Text::kSignature), say(Text::kDate));
     }

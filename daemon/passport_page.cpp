@@ -28,15 +28,16 @@ constexpr auto kPassportStyle = R"(
 td.pass { color: var(--point); } td.fail { color: var(--fail); font-weight: 600; }
 td.hash { font: 11px/1.35 "DejaVu Sans Mono", monospace; white-space: normal; word-break: break-all; }
 td.free { white-space: normal; overflow-wrap: anywhere; }
+td.text:first-child, th { white-space: normal; }
 table.full { width: 100%; } table.origin td { text-align: left; }
 table.signatures { width: 100%; margin-top: .5rem; break-inside: avoid; }
 table.signatures td { border: 0; padding: 1.6rem 1.2rem 0 0; vertical-align: bottom; width: 25%; }
-table.signatures td.line { border-bottom: 1px solid var(--ink); }
+table.signatures div { border-bottom: 1px solid var(--ink); }
 table.signatures tr.under td { color: var(--soft); font-size: .8rem; padding-top: .1rem;
                                text-align: left; }
 @media print {
   html { font-size: 11px; } h2 { margin-top: 1.4rem; } th, td { padding: .2rem .6rem .2rem 0; }
-  .plots { grid-template-columns: 1fr 1fr; } section { break-inside: auto; }
+  .wide { overflow: visible; } .plots { grid-template-columns: 1fr 1fr; } section { break-inside: auto; }
   section.together { break-inside: avoid; }
 }
 )";
@@ -54,7 +55,7 @@ class Page : public PassportWriter {
     const std::string title = fmt::format("{} {}", say(Text::kTitle), acceptance_.gyro());
     out_ = model::page_start(title, say(Text::kLanguageCode), kPassportStyle);
     out_ += fmt::format("<h1>{}</h1>\n<p class=\"sub\">{} {} &middot; fogbench {}</p>\n",
-                        escaped(title), say(Text::kIssued), passport_.issued_at,
+                        escaped(title), say(Text::kIssued), date(passport_.issued_at),
                         passport_.software_version);
     verdict();
     limits();
@@ -104,6 +105,9 @@ class Page : public PassportWriter {
           kind_of(r.verdict));
     }
     end_table();
+    const config::LimitsConfig& config = passport_.limits;
+    note(fmt::format("&laquo;{}&raquo;{}{}", escaped(config.name),
+                     config.description.empty() ? "" : ": ", escaped(config.description)));
     note(say(Text::kRule, number(passport_.judged.coverage_factor)));
     end_section();
   }
@@ -122,17 +126,15 @@ class Page : public PassportWriter {
                                    : say(r.significant ? Text::kBeyondNoise : Text::kWithinNoise);
       row({name(r.quantity), unit(r.unit),
            missing ? say(Text::kMissing) : fmt::format("{} &rarr; {}", r.test_a, r.test_b),
-           missing ? "" : fmt::format("{} &rarr; {}", number(r.value_a), number(r.value_b)),
+           missing ? ""
+                   : fmt::format("{} &rarr; {}", rounded(r.value_a, r.expanded_uncertainty).first,
+                                 rounded(r.value_b, r.expanded_uncertainty).first),
            difference, uncertainty, number(r.limit), says},
           r.verdict ? kind_of(*r.verdict) : "");
     }
     end_table();
-    for (const model::RunChange& c : acceptance_.changes) {
-      const std::string p = c.p_repeat < 1e-4 ? "< 0.0001" : fmt::format("{:.2g}", c.p_repeat);
-      const auto [scale, error] = rounded(c.common_scale, expanded({0, c.scale_standard_error}));
-      note(say(Text::kChange, escaped(c.run_a), escaped(c.run_b), scale, error,
-               localised(fmt::format("{:.1f}", c.angle_deg), language_),
-               escaped(localised(p, language_))));
+    for (const model::RunChange& change : acceptance_.changes) {
+      note(escaped(change_text(change, passport_.judged.coverage_factor, language_)));
     }
     end_section();
   }
@@ -141,30 +143,45 @@ class Page : public PassportWriter {
     const auto fitted = std::find_if(acceptance_.tests.begin(), acceptance_.tests.end(),
                                      [](const TestResults& test) { return test.fit.has_value(); });
     if (fitted == acceptance_.tests.end()) return;
-    section(Text::kCoefficients);
-    table({say(Text::kQuantity), say(Text::kUnit), say(Text::kTest), say(Text::kValue),
-           say(Text::kUncertainty)},
-          3, "");
+    section(Text::kCoefficients, true);
+    std::vector<std::string> heads{say(Text::kQuantity), say(Text::kUnit)}, ids;
     for (const TestResults& test : acceptance_.tests) {
       if (!test.fit) continue;
+      heads.push_back(fmt::format("{} {}, &plusmn; U", say(Text::kTest), escaped(test.name)));
       for (const model::Estimate& e : test.fit->estimates) {
-        const model::Measured m{e.name,  test.name,        e.unit,
-                                e.value, e.standard_error, e.coverage_factor};
-        auto [value, uncertainty] =
-            rounded(e.value, expanded_uncertainty(m, passport_.judged.coverage_factor));
-        if (std::isnan(e.value)) value = say(Text::kNotDetermined);
-        row({name(e.name), unit(e.unit), escaped(test.name), value, uncertainty});
+        if (std::find(ids.begin(), ids.end(), e.name) == ids.end()) ids.push_back(e.name);
       }
     }
+    table(heads, 2, "");
+    for (const std::string& id : ids) row(coefficient(id));
     end_table();
     for (const TestResults& test : acceptance_.tests) {
       if (!test.fit) continue;
-      note(fmt::format("{} {}: {} {}, {} {}, RMS {} {}", say(Text::kTest), escaped(test.name),
-                       say(Text::kModel), escaped(test.model), test.fit->rows.size(),
-                       say(Text::kPointsOfFit), number(test.fit->rms), unit("deg/h")));
+      note(fmt::format("{} {}: {} &laquo;{}&raquo;, {} {}, RMS {} {}", say(Text::kTest),
+                       escaped(test.name), say(Text::kModel), escaped(test.model),
+                       test.fit->rows.size(), say(Text::kPointsOfFit), number(test.fit->rms),
+                       unit("deg/h")));
     }
     note(say(Text::kUncertaintyScope, number(fitted->fit->fitted.reference_temperature_c)));
     end_section();
+  }
+
+  /// Its row: name, unit, and what each test's fit made of it.
+  std::vector<std::string> coefficient(const std::string& id) const {
+    std::vector<std::string> cells{name(id), ""};
+    for (const TestResults& test : acceptance_.tests) {
+      if (!test.fit) continue;
+      cells.emplace_back();
+      for (const model::Estimate& e : test.fit->estimates) {
+        if (e.name != id) continue;
+        cells[1] = unit(e.unit);
+        const double u =
+            0.5 * e.coverage_factor * passport_.judged.coverage_factor * e.standard_error;
+        cells.back() =
+            std::isnan(e.value) ? say(Text::kNotDetermined) : with_uncertainty(e.value, u);
+      }
+    }
+    return cells;
   }
 
   void thermal() {

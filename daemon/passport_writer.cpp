@@ -16,6 +16,13 @@ std::string PassportWriter::unit(const std::string& unit) const {
   return escaped(unit_name(unit, language_));
 }
 
+std::string PassportWriter::date(const std::string& time) {
+  std::string out = time;
+  if (const std::size_t t = out.find('T'); t != std::string::npos) out[t] = ' ';
+  if (out.ends_with('Z')) out.replace(out.size() - 1, 1, " UTC");
+  return out;
+}
+
 std::string PassportWriter::number(double value) const {
   return std::isfinite(value) ? localised(fmt::format("{:.4g}", value), language_) : "&ndash;";
 }

@@ -28,6 +28,8 @@ class PassportWriter {
   std::string name(const std::string& quantity) const;
   std::string unit(const std::string& unit) const;
 
+  /// "2026-03-01 12:00:00 UTC" of ISO 8601.
+  static std::string date(const std::string& time);
   std::string number(double value) const;
   /// Empty for none.
   std::string number(const std::optional<double>& value) const;

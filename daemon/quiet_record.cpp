@@ -9,8 +9,9 @@ using procedures::PointKind;
 
 namespace {
 
-/// Below this the room's own changes and a settled thermostat stay.
-constexpr double kAtRestCPerH = 2.0;
+/// The room's own changes, and a sensor's noise over a minute, stay below this; a gyro that still
+/// cools does not.
+constexpr double kAtRestCPerH = 0.7;
 constexpr double kLeastLengthS = 300.0;
 /// Windows of a wait follow one another within a frame or two.
 constexpr double kMostGapS = 0.5;
@@ -19,7 +20,7 @@ constexpr double kMostGapS = 0.5;
 constexpr double kIntervalS = 1.0;
 
 bool is_quiet(const Point& point) {
-  return point.kind == PointKind::kTransient && std::isnan(point.target_c) &&
+  return point.kind == PointKind::kTransient && !(point.heater_w > 0.0) &&
          std::isnan(point.field_set_ut) &&
          !(std::abs(point.temperature_rate_c_per_h) > kAtRestCPerH);
 }

@@ -27,8 +27,9 @@ std::vector<Group> groups_of(std::span<const Point> points) {
   const Point* baseline = nullptr;
   for (const Point& point : points) {
     if (point.kind == PointKind::kBaseline) baseline = &point;
+    // A thermostat that is off has a target all the same.
     const bool at_set_point = point.kind == PointKind::kAverage && std::isnan(point.field_set_ut) &&
-                              std::isfinite(point.target_c);
+                              std::isfinite(point.target_c) && point.heater_w > 0.0;
     if (!at_set_point) continue;
     if (groups.empty() || groups.back().baseline != baseline || !groups.back().takes(point)) {
       groups.push_back({.baseline = baseline});

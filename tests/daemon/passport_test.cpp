@@ -89,6 +89,7 @@ class PassportTest : public testing::Test {
           Point point = window(PointKind::kAverage, "thermostat/plateau", test, 0,
                                1.0 + 0.01 * (target - 21.0));
           point.target_c = point.temperature_c = target;
+          point.heater_w = 3.0;
           add(point);
         }
       }
@@ -265,6 +266,7 @@ TEST(SetPoints, SigmaIsPooledAboutEachSetPointsOwnMean) {
   for (const auto& [target, rate] : {std::pair{31.0, 2.0}, {31.0, 4.0}, {41.0, 9.0}, {41.0, 9.0}}) {
     points.push_back(window(PointKind::kAverage, "p", 1, points.back().time_s + 200, rate));
     points.back().target_c = target;
+    points.back().heater_w = 3.0;
   }
   const auto groups = set_points_of(points, nullptr);
   ASSERT_TRUE(groups);
@@ -288,8 +290,8 @@ TEST(QuietStretch, IsTheLongestInWhichNothingIsDone) {
     }
   };
   add(4, [](Point&) {});
-  add(9, [](Point& p) { p.target_c = 31.0; });
-  add(9, [](Point& p) { p.temperature_rate_c_per_h = -5.0; });
+  add(9, [](Point& p) { p.heater_w = 3.0; });
+  add(9, [](Point& p) { p.temperature_rate_c_per_h = -1.0; });
   add(5, [](Point&) {});
   add(9, [](Point& p) { p.kind = PointKind::kAverage; });
   const auto stretch = quiet_stretch(points);
