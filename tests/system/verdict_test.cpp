@@ -17,17 +17,18 @@ using testing::HasSubstr;
 /// Both tests of an acceptance, in a few short averages.
 constexpr auto kShortAcceptance = R"({
   "name": "short-acceptance", "description": "Both tests, short.",
+  "parameters": {"levels_ut": [0, 150, 300, 150, 0, -150, -300, -150, 0], "set_points_c": [31, 36]},
   "steps": [
     {"step": "wait", "duration_s": 600, "segment": "static", "window_s": 60},
     {"step": "call", "procedure": "CONFIG/coil-sweep.json", "test": 1,
-     "parameters": {"average_s": 20, "levels_ut": [0, 150, 300, 150, 0, -150, -300, -150, 0]}},
+     "parameters": {"average_s": 20, "levels_ut": "$levels_ut"}},
     {"step": "call", "procedure": "CONFIG/thermostat-steps.json", "test": 1,
-     "parameters": {"set_points_c": [31, 36], "warm_up_s": 0, "dwell_s": 60, "band_c": 0.3,
+     "parameters": {"set_points_c": "$set_points_c", "warm_up_s": 0, "dwell_s": 60, "band_c": 0.3,
                     "slope_c_per_h": 5}},
     {"step": "call", "procedure": "CONFIG/coil-sweep.json", "test": 2,
-     "parameters": {"average_s": 20, "levels_ut": [0, 150, 300, 150, 0, -150, -300, -150, 0]}},
+     "parameters": {"average_s": 20, "levels_ut": "$levels_ut"}},
     {"step": "call", "procedure": "CONFIG/thermostat-steps.json", "test": 2,
-     "parameters": {"set_points_c": [31, 36], "warm_up_s": 0, "dwell_s": 60, "band_c": 0.3,
+     "parameters": {"set_points_c": "$set_points_c", "warm_up_s": 0, "dwell_s": 60, "band_c": 0.3,
                     "slope_c_per_h": 5}}
   ]})";
 
@@ -93,7 +94,8 @@ TEST_F(VerdictTest, OneRunFromMeasurementToPassport) {
   EXPECT_EQ(origin["seed"], 3);
   EXPECT_EQ(origin["instruments"].size(), 6U);
   for (const auto& instrument : origin["instruments"]) {
-    if (instrument["role"] == "gyro") EXPECT_EQ(instrument["serial_number"], "FOG-42");
+    if (instrument["role"] != "gyro") continue;
+    EXPECT_EQ(instrument["serial_number"], "FOG-42");
   }
   EXPECT_EQ(document["noise"].size(), 1U);
   EXPECT_EQ(document["tests"].size(), 2U);
@@ -106,7 +108,7 @@ TEST_F(VerdictTest, OneRunFromMeasurementToPassport) {
 
 TEST_F(VerdictTest, ARunThatWasNotCompletedIsNotJudgedUnasked) {
   const std::string scenario = file("fault.json", R"({"name": "f", "noise": "tactical",
-    "faults": [{"device": "gyro", "kind": "unplug", "at_s": 200}]})");
+    "faults": [{"device": "gyro", "kind": "unplug", "at_s": 200, "for_s": 3600}]})");
   const Finished run = support::run(
       dry_run({"coil-sweep", "--set", "average_s=20"}, {"--scenario", scenario, "--seed", "1"}));
   ASSERT_EQ(run.status, 4) << run.err;
