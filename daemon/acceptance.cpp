@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "config/paths.hpp"
 #include "daemon/export.hpp"
@@ -181,21 +182,46 @@ Result<std::optional<QuietStretch>> own_stretch(RunLogReader& reader, std::int64
   return quiet_stretch(points);
 }
 
+/// Where the run and those that it takes up come from.
+Status add_provenance(RunLogReader& reader, std::int64_t number, Acceptance& out) {
+  const auto parts = reader.chain(number);
+  if (!parts) return parts.error();
+  for (const StoredRun& part : *parts) {
+    auto made = provenance_of(reader, part.run);
+    if (!made) return made.error();
+    made->taken_up = part.run != number;
+    out.runs.push_back(std::move(*made));
+    if (const std::string& gyro = part.header.gyro_serial_number; gyro != out.gyro()) {
+      return Error{
+          ErrorCode::kBadInput,
+          fmt::format("run {} is of gyro \"{}\" and run {} of \"{}\"; expected runs of one gyro",
+                      out.runs.front().run.run, out.gyro(), part.run, gyro)};
+    }
+  }
+  return {};
+}
+
+/// The noise terms of the longest stretch at rest in these runs; all their raw data are checked.
+Result<std::optional<NoiseTerms>> longest_noise(RunLogReader& reader,
+                                                std::span<const RunProvenance> runs) {
+  std::optional<NoiseTerms> longest;
+  for (const RunProvenance& made : runs) {
+    const auto stretch = own_stretch(reader, made.run.run);
+    if (!stretch) return stretch.error();
+    auto terms = read_noise_terms(reader, made.run, *stretch);
+    if (!terms) return terms.error();
+    if (*terms && (!longest || (*terms)->samples > longest->samples)) longest = std::move(*terms);
+  }
+  return longest;
+}
+
 /// The run's tests and noise; `several` runs have their number in the tests' names.
 Status add_run(RunLogReader& reader, std::int64_t number, bool several,
                const AcceptanceOptions& options, Acceptance& out) {
   const auto points = valid_points(reader, number, options.unfinished);
   if (!points) return points.error();
-  auto made = provenance_of(reader, number);
-  if (!made) return made.error();
-  out.runs.push_back(std::move(*made));
-  const RunProvenance& run = out.runs.back();
-  if (const std::string& gyro = run.run.header.gyro_serial_number; gyro != out.gyro()) {
-    return Error{
-        ErrorCode::kBadInput,
-        fmt::format("run {} is of gyro \"{}\" and run {} of \"{}\"; expected runs of one gyro",
-                    out.runs.front().run.run, out.gyro(), number, gyro)};
-  }
+  const std::size_t first = out.runs.size();
+  if (const Status added = add_provenance(reader, number, out); !added) return added;
   const auto name_of = [&](int test) {
     return several ? fmt::format("{}/{}", number, test) : std::to_string(test);
   };
@@ -211,9 +237,7 @@ Status add_run(RunLogReader& reader, std::int64_t number, bool several,
     out.tests.push_back(std::move(*test));
     of_test.clear();
   }
-  const auto stretch = own_stretch(reader, number);
-  if (!stretch) return stretch.error();
-  const auto terms = read_noise_terms(reader, run.run, *stretch);
+  const auto terms = longest_noise(reader, std::span(out.runs).subspan(first));
   if (!terms) return terms.error();
   if (*terms) {
     out.noise.push_back(**terms);
@@ -223,11 +247,6 @@ Status add_run(RunLogReader& reader, std::int64_t number, bool several,
 }
 
 }  // namespace
-
-bool Acceptance::completed() const {
-  return std::all_of(runs.begin(), runs.end(),
-                     [](const RunProvenance& made) { return made.run.completed(); });
-}
 
 Result<Acceptance> gather_acceptance(RunLogReader& reader, const std::vector<std::int64_t>& runs,
                                      const AcceptanceOptions& options) {

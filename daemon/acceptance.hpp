@@ -48,10 +48,13 @@ struct RunProvenance {
   std::vector<procedures::InstrumentRecord> instruments;
   std::string raw_sha256;       ///< of the raw data as they are now
   bool raw_data_intact = true;  ///< and it is the one that was written at the end
+  bool taken_up = false;        ///< the next run of the list went on where it stopped
+
+  bool whole() const { return taken_up || run.completed(); }
 };
 
 struct Acceptance {
-  std::vector<RunProvenance> runs;
+  std::vector<RunProvenance> runs;  ///< before a run that takes up others, these
   std::vector<TestResults> tests;
   std::vector<NoiseTerms> noise;
   std::vector<model::Measured> measured;
@@ -59,7 +62,6 @@ struct Acceptance {
   std::vector<model::RunChange> changes;
 
   const std::string& gyro() const { return runs.front().run.header.gyro_serial_number; }
-  bool completed() const;
 };
 
 /// Precondition: at least one run.

@@ -38,7 +38,7 @@ std::vector<Remark> remarks_on(const Acceptance& acceptance) {
   for (const RunProvenance& made : acceptance.runs) {
     const procedures::RunHeader& header = made.run.header;
     const std::string number = std::to_string(made.run.run);
-    if (!made.run.completed()) {
+    if (!made.whole()) {
       out.push_back({Text::kRemarkUnfinished, number, {made.run.outcome()}});
     }
     if (!made.raw_data_intact) out.push_back({Text::kRemarkRawData, number, {}});
@@ -66,7 +66,7 @@ Result<Passport> make_passport(Acceptance acceptance, config::LimitsConfig limit
   auto judged = model::judge_results(acceptance.measured, limits);
   if (!judged) return judged.error();
   for (const RunProvenance& made : acceptance.runs) {
-    if (made.run.completed() && made.raw_data_intact) continue;
+    if (made.whole() && made.raw_data_intact) continue;
     judged->overall = model::worst_of(judged->overall, model::Conformity::kIndeterminate);
   }
   std::vector<Remark> remarks = remarks_on(acceptance);

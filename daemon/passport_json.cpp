@@ -144,6 +144,7 @@ ordered_json run_json(const RunProvenance& made) {
   ordered_json out{
       {"run", made.run.run},
       {"outcome", made.run.outcome()},
+      {"taken_up", made.taken_up},
       {"started_at", header.started_at},
       {"ended_at", made.run.end ? ordered_json(made.run.end->ended_at) : ordered_json()},
       {"gyro_serial_number", nullable(header.gyro_serial_number)},

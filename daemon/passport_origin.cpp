@@ -53,7 +53,9 @@ class Origin : public PassportWriter {
     if (header.seed) fact(Text::kSeed, std::to_string(*header.seed));
     fact(Text::kStarted, date(header.started_at));
     fact(Text::kEnded, run.end ? date(run.end->ended_at) : "");
-    fact(Text::kOutcome, std::string(outcome_name(run.outcome(), language_)));
+    const std::string outcome(outcome_name(run.outcome(), language_));
+    fact(Text::kOutcome,
+         made.taken_up ? fmt::format("{}; {}", outcome, say(Text::kTakenUp)) : outcome);
     fact(Text::kSoftware, "fogbench " + header.software_version);
     fact(Text::kConfiguration,
          hash(header.procedure_json + header.bench_json + header.scenario_json), "hash");

@@ -145,6 +145,7 @@ constexpr Entry kTexts[] = {
     {Text::kAborted, {"aborted", "прерван оператором"}},
     {Text::kFailed, {"failed", "прерван отказом"}},
     {Text::kInterrupted, {"interrupted", "оборвался"}},
+    {Text::kTakenUp, {"the next run goes on from there", "продолжен следующим прогоном"}},
     {Text::kInstruments, {"Instruments", "Средства измерений"}},
     {Text::kInstrument, {"instrument", "прибор"}},
     {Text::kIdentity, {"identity", "тип"}},

@@ -95,6 +95,7 @@ enum class Text {
   kAborted,
   kFailed,
   kInterrupted,
+  kTakenUp,
   kInstruments,
   kInstrument,
   kIdentity,

@@ -129,6 +129,7 @@ class PassportTest : public testing::Test {
   }
 
   support::TemporaryFolder folder_;
+  std::int64_t takes_up_ = 0;  ///< by the runs that are recorded from now on
 };
 
 const model::Measured* find(const Acceptance& acceptance, const std::string& quantity,
@@ -172,6 +173,25 @@ TEST_F(PassportTest, ARunThatWasNotCompletedIsTakenOnlyWhenAskedForAndNeverPasse
   EXPECT_EQ(asked->judged.results[0].verdict, Conformity::kPass);
   EXPECT_EQ(asked->judged.overall, Conformity::kIndeterminate);
   EXPECT_THAT(passport_html(*asked, Language::kRussian), HasSubstr("прерван оператором"));
+}
+
+TEST_F(PassportTest, ARunThatTakesUpAnInterruptedOneCountsWithIt) {
+  {
+    auto log = RunLog::open(folder_ / "store.db");
+    ASSERT_TRUE(log);
+    ASSERT_TRUE((*log)->begin_run(header_of("SN-7"), {}));
+  }
+  takes_up_ = 1;
+  record("SN-7", procedures::RunOutcome::kCompleted);
+  const auto both = gather({2});
+  ASSERT_TRUE(both) << both.error().message;
+  ASSERT_EQ(both->runs.size(), 2U);
+  EXPECT_TRUE(both->runs[0].taken_up);
+  EXPECT_EQ(both->runs[0].run.outcome(), "interrupted");
+  const auto made = make_passport(*both, limits(1.0), "2026-03-02T00:00:00Z", "0.1.0");
+  ASSERT_TRUE(made);
+  EXPECT_EQ(made->judged.overall, Conformity::kPass);
+  EXPECT_FALSE(gather({1})) << "alone it is an interrupted run";
 }
 
 TEST_F(PassportTest, RunsOfTwoGyrosAreRefused) {
