@@ -312,8 +312,7 @@ Status RunLogReader::read_gyro(std::int64_t run,
 }
 
 Result<std::string> RunLogReader::raw_sha256(std::int64_t run) {
-  auto select =
-      database_->prepare("SELECT sha256 FROM gyro_chunks WHERE run = ? ORDER BY chunk");
+  auto select = database_->prepare("SELECT sha256 FROM gyro_chunks WHERE run = ? ORDER BY chunk");
   if (!select) return select.error();
   select->bind(run);
   std::vector<std::byte> hashes;
