@@ -48,6 +48,8 @@ void add_compensate(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_diagnose(CLI::App& app, Action& action);
 void add_allan(CLI::App& app, Action& action);
+void add_verdict(CLI::App& app, Action& action);
+void add_passport(CLI::App& app, Action& action);
 void add_challenge(CLI::App& app, Action& action);
 void add_reveal(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);

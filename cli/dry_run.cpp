@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include "cli/progress_line.hpp"
 #include "cli/run_report.hpp"
 #include "daemon/abort_on_signal.hpp"
+#include "daemon/access.hpp"
 #include "daemon/run_options.hpp"
 #include "daemon/session.hpp"
 #include "daemon/simulated_operator.hpp"
@@ -27,6 +29,7 @@ struct DryRunOptions {
   std::string scenario = daemon::SetupOptions{}.scenario;
   std::optional<std::uint64_t> seed;
   std::string store;
+  std::string operator_name, gyro;
   daemon::Speed speed = daemon::Speed::kMaximum;
   bool json = false;
 };
@@ -94,6 +97,7 @@ Result<ExitStatus> run_dry_run(const DryRunOptions& options) {
   auto setup = daemon::load_setup({options.procedure.bench, options.scenario});
   if (!setup) return setup.error();
   const std::string bench = setup->bench.name;
+  if (!options.gyro.empty()) setup->bench.gyro.serial_number = options.gyro;
   const auto planned =
       daemon::plan_procedure(options.procedure.procedure, setup->bench, *parameters);
   if (!planned) return planned.error();
@@ -121,7 +125,9 @@ Result<ExitStatus> run_dry_run(const DryRunOptions& options) {
     unread = true;
     engine.request_abort();
   });
-  const auto summary = (*session)->run(*planned);
+  const std::string person_name =
+      options.operator_name.empty() ? daemon::user_name(getuid()) : options.operator_name;
+  const auto summary = (*session)->run(*planned, person_name);
   progress.clear();
   if (!summary) return summary.error();
 
@@ -152,6 +158,9 @@ void add_dry_run(CLI::App& app, Action& action) {
             "--scenario", options.scenario,
             "What the simulated gyro hides: a file, or a ready one (default: clean)");
         daemon::add_seed_option(command, options.seed);
+        daemon::add_gyro_option(command, options.gyro);
+        command.add_option("--operator", options.operator_name,
+                           "Who runs it, for the record (default: the user's login name)");
         add_store_option(command, options.store);
         daemon::add_speed_option(command, options.speed, "max");
         command.add_flag("--json", options.json, "One JSON document on stdout, at the end");

@@ -7,18 +7,38 @@
 #include <filesystem>
 #include <system_error>
 
+#include "cli/common_options.hpp"
 #include "daemon/file_hash.hpp"
+#include "daemon/run_log_reader.hpp"
 #include "drivers/clock.hpp"
 
 namespace fogbench::cli {
 
+namespace {
+
+/// Of a file its hash, of a run the one of its raw data; empty when it has none yet.
+Result<std::string> hash_of_data(const std::string& name, const DataOptions& data) {
+  const auto stored = run_in_store(name, data);
+  if (!stored) {
+    std::error_code ignored;  // a pipe cannot be read twice
+    if (!std::filesystem::is_regular_file(name, ignored)) return std::string();
+    return daemon::file_sha256(name);
+  }
+  const auto path = store_path(stored->store);
+  if (!path) return path.error();
+  auto reader = daemon::RunLogReader::open(*path);
+  if (!reader) return reader.error();
+  return (*reader)->raw_sha256(stored->run);
+}
+
+}  // namespace
+
 Status sign(config::FitRecord& record, const DataOptions& data) {
   for (const std::string& name : data.data) {
     record.data += (record.data.empty() ? "" : ", ") + name;
-    std::error_code ignored;  // what is no file is a run of the store
-    if (!std::filesystem::is_regular_file(name, ignored)) continue;
-    const Result<std::string> hash = daemon::file_sha256(name);
+    const Result<std::string> hash = hash_of_data(name, data);
     if (!hash) return hash.error();
+    if (hash->empty()) continue;
     record.data_sha256 += (record.data_sha256.empty() ? "" : ", ") + *hash;
   }
   const auto now = std::chrono::floor<std::chrono::seconds>(drivers::SteadyClock().wall_now());

@@ -69,14 +69,8 @@ Result<model::Table> load_run(const std::string& store, std::int64_t run, const 
 /// "7", "STORE.db#7" or a CSV file.
 Result<model::Table> load_one(const std::string& data, const DataOptions& options,
                               const Renames& renames, std::size_t most_rows) {
-  if (const auto run = run_number(data)) {
-    return load_run(options.store, *run, renames, options.unfinished);
-  }
-  const std::size_t hash = data.rfind('#');
-  if (hash != std::string::npos && hash > 0) {
-    if (const auto run = run_number(std::string_view(data).substr(hash + 1))) {
-      return load_run(data.substr(0, hash), *run, renames, options.unfinished);
-    }
+  if (const auto stored = run_in_store(data, options)) {
+    return load_run(stored->store, stored->run, renames, options.unfinished);
   }
   return model::read_csv(data, renames, most_rows);
 }
@@ -88,6 +82,15 @@ void name_runs_after(const std::string& data, model::Table& table) {
 }
 
 }  // namespace
+
+std::optional<RunInStore> run_in_store(const std::string& data, const DataOptions& options) {
+  if (const auto run = run_number(data)) return RunInStore{options.store, *run};
+  const std::size_t hash = data.rfind('#');
+  if (hash == std::string::npos || hash == 0) return {};
+  const auto run = run_number(std::string_view(data).substr(hash + 1));
+  if (!run) return {};
+  return RunInStore{data.substr(0, hash), *run};
+}
 
 void add_data_options(CLI::App& command, DataOptions& options, DataCount count) {
   CLI::Option* data =

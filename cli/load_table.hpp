@@ -2,6 +2,8 @@
 // The DATA argument that the model's commands share: a run of the store, or a CSV file.
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,15 @@ enum class DataCount { kOne, kSeveral };
 
 /// Declares DATA, --column, --segment, --unfinished and --store on a command.
 void add_data_options(CLI::App& command, DataOptions& options, DataCount count = DataCount::kOne);
+
+/// What "7" or "STORE.db#7" names.
+struct RunInStore {
+  std::string store;  ///< empty: the default one
+  std::int64_t run = 0;
+};
+
+/// Empty for a CSV file.
+std::optional<RunInStore> run_in_store(const std::string& data, const DataOptions& options);
 
 /// For headings: "run 7", "STORE.db#7, file.csv".
 std::string data_name(const DataOptions& options);

@@ -54,6 +54,8 @@ void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_compare(app, action);
   fogbench::cli::add_diagnose(app, action);
   fogbench::cli::add_allan(app, action);
+  fogbench::cli::add_verdict(app, action);
+  fogbench::cli::add_passport(app, action);
   fogbench::cli::add_challenge(app, action);
   fogbench::cli::add_reveal(app, action);
   fogbench::cli::add_run(app, action);

@@ -116,6 +116,7 @@ ordered_json to_json(const daemon::StoredRun& run) {
                     {"bench", header.bench},
                     {"seed", header.seed ? ordered_json(*header.seed) : ordered_json()},
                     {"gyro_serial_number", header.gyro_serial_number},
+                    {"operator", header.operator_name},
                     {"software_version", header.software_version},
                     {"started_at", header.started_at},
                     {"outcome", run.outcome()},
@@ -207,6 +208,7 @@ std::string heading(const daemon::StoredRun& run) {
     line("takes up", fmt::format("run {}; the results are of both", header.continues->run));
   if (run.taken_up_by != 0) line("taken up by", fmt::format("run {}", run.taken_up_by));
   line("gyro", header.gyro_serial_number);
+  line("operator", header.operator_name);
   line("seed", header.seed ? std::to_string(*header.seed) : "");
   line("software", "fogbench " + header.software_version);
   line("points", run.points_void == 0

@@ -69,13 +69,21 @@ void describe(Visitor& v, Limit& l) {
   v.required("quantity", l.quantity, "A result: magnetic_linear_z, temperature_sigma, K_z.");
   v.optional("minimum", l.minimum, "Lowest value that passes.");
   v.optional("maximum", l.maximum, "Highest value that passes.");
-  v.optional("unit", l.unit, "Unit of both.");
+  v.optional("repeatability", l.repeatability,
+             "Largest change from one test to the next that passes, either way.", at_least(0));
+  v.optional("tests", l.tests, "In how many tests, where it is not the file's number.",
+             at_least(1));
+  v.optional("unit", l.unit, "Of the limits, as the results have it.");
 }
 
 template <class Visitor>
 void describe(Visitor& v, LimitsConfig& l) {
   v.required("name", l.name, "Short name.");
   v.optional("description", l.description, "Where the limits come from, in a sentence.");
+  v.optional("coverage_factor", l.coverage_factor,
+             "Of the expanded uncertainty, the guard band at each limit; 2 without it.", above(0));
+  v.optional("tests", l.tests, "In how many tests each quantity has to be measured; 1 without it.",
+             at_least(1));
   v.required("limits", l.limits, "One entry a quantity.", not_empty());
 }
 

@@ -5,8 +5,9 @@
 namespace fogbench::config {
 
 bool check(const Place& at, const Limit& l) {
-  if (!l.minimum && !l.maximum) {
-    return at.fail("has neither \"minimum\" nor \"maximum\"; expected one or both");
+  if (!l.minimum && !l.maximum && !l.repeatability) {
+    return at.fail(
+        "has neither \"minimum\" nor \"maximum\" nor \"repeatability\"; expected one or more");
   }
   if (l.minimum && l.maximum && *l.minimum > *l.maximum) {
     return (at / "minimum").wrong(fmt::format("at most the maximum {}", *l.maximum));

@@ -214,4 +214,10 @@ Sha256 sha256_of(std::span<const std::byte> bytes) {
   return hash({bytes});
 }
 
+std::string hexadecimal(std::span<const std::byte> bytes) {
+  std::string text;
+  for (const std::byte byte : bytes) text += fmt::format("{:02x}", std::to_integer<int>(byte));
+  return text;
+}
+
 }  // namespace fogbench::daemon

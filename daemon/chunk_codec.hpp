@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "config/result.hpp"
@@ -60,5 +61,6 @@ Status decode_chunk(const Chunk& chunk, drivers::GyroBlock& out);
 
 /// SHA-256 of bytes, for the run's hash over its chunks' hashes.
 Sha256 sha256_of(std::span<const std::byte> bytes);
+std::string hexadecimal(std::span<const std::byte> bytes);
 
 }  // namespace fogbench::daemon

@@ -14,6 +14,7 @@
 
 #include "config/exit_status.hpp"
 #include "daemon/abort_on_signal.hpp"
+#include "daemon/access.hpp"
 #include "daemon/manual.hpp"
 #include "daemon/run_options.hpp"
 #include "daemon/serve.hpp"
@@ -51,7 +52,7 @@ ManualText manual_text() {
 struct DaemonOptions {
   SetupOptions setup;
   std::optional<std::uint64_t> seed;
-  std::string store;
+  std::string store, gyro;
   Speed speed = Speed::kRealtime;
   ServeOptions serve;
   std::vector<std::string> procedures;
@@ -67,6 +68,7 @@ void declare(CLI::App& app, DaemonOptions& options) {
   app.add_option("--store", options.store, "Run log to write (default: $FOGBENCH_STORE...)");
   app.add_option("--scenario", options.setup.scenario,
                  "What the simulated gyro hides (default: clean)");
+  add_gyro_option(app, options.gyro);
   add_seed_option(app, options.seed);
   add_speed_option(app, options.speed, "realtime");
   app.add_option("--socket", options.serve.socket,
@@ -113,6 +115,7 @@ Status run(const DaemonOptions& options) {
   auto setup = load_setup(options.setup);
   if (!setup) return setup.error();
   if (const Status chosen = choose_bench(options, *setup); !chosen) return chosen;
+  if (!options.gyro.empty()) setup->bench.gyro.serial_number = options.gyro;
   std::vector<PlannedProcedure> planned;
   for (const std::string& name : options.procedures) {
     auto procedure = plan_procedure(name, setup->bench, {});
@@ -156,7 +159,7 @@ Status run(const DaemonOptions& options) {
   for (const PlannedProcedure& procedure : planned) {
     if (AbortOnSignal::asked()) return Error{ErrorCode::kAborted, "aborted on request"};
     step = 0;
-    const auto summary = (*session)->run(procedure);
+    const auto summary = (*session)->run(procedure, user_name(getuid()));
     if (!summary) return summary.error();
     const procedures::RunEnd& end = summary->end;
     const std::string says =

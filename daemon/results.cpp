@@ -36,15 +36,11 @@ std::size_t swept_axis(std::span<const Point* const> sweep) {
   return static_cast<std::size_t>(std::max_element(range.begin(), range.end()) - range.begin());
 }
 
-Figure extreme_slope(std::span<const Point* const> sweep) {
-  const auto by_level = [](const Point* a, const Point* b) {
-    return a->field_set_ut < b->field_set_ut;
-  };
-  const auto [low, high] = std::minmax_element(sweep.begin(), sweep.end(), by_level);
-  const double span = ((*high)->field_set_ut - (*low)->field_set_ut) / kReferenceFieldUt;
+Figure extreme_slope(const Point& low, const Point& high) {
+  const double span = (high.field_set_ut - low.field_set_ut) / kReferenceFieldUt;
   if (!(span > 0.0)) return kUnknown;
-  return {((*high)->rate_deg_per_h - (*low)->rate_deg_per_h) / span,
-          std::hypot((*high)->rate_std_error_deg_per_h, (*low)->rate_std_error_deg_per_h) / span};
+  return {(high.rate_deg_per_h - low.rate_deg_per_h) / span,
+          std::hypot(high.rate_std_error_deg_per_h, low.rate_std_error_deg_per_h) / span};
 }
 
 struct Line {
@@ -100,7 +96,13 @@ SweepResult sweep_result(std::span<const Point* const> sweep, std::size_t axis, 
   result.sweep = sweep_of(*sweep.front());
   result.axis = "xyz"[axis];
   result.points = sweep.size();
-  result.k_deg_per_h = extreme_slope(sweep);
+  const auto by_level = [](const Point* a, const Point* b) {
+    return a->field_set_ut < b->field_set_ut;
+  };
+  const auto [low, high] = std::minmax_element(sweep.begin(), sweep.end(), by_level);
+  result.lowest = **low;
+  result.highest = **high;
+  result.k_deg_per_h = extreme_slope(result.lowest, result.highest);
   std::vector<double> field, rate;
   for (const Point* point : sweep) {
     const double measured = field_of(*point)[axis] / kReferenceFieldUt;

@@ -43,9 +43,10 @@ struct SweepResult {
   std::string sweep;  ///< segment before the '/'
   char axis = '?';    ///< x, y or z: the one that the measured field moved along
   std::size_t points = 0;
-  Figure k_deg_per_h;          ///< per 100 uT
-  Figure slope_deg_per_h;      ///< per 100 uT
-  Figure intercept_deg_per_h;  ///< at zero measured field, as deviation from the baseline
+  procedures::Point lowest, highest;  ///< by commanded level: what K is made of
+  Figure k_deg_per_h;                 ///< per 100 uT
+  Figure slope_deg_per_h;             ///< per 100 uT
+  Figure intercept_deg_per_h;         ///< at zero measured field, as deviation from the baseline
   double zero_first_deg_per_h, zero_middle_deg_per_h, zero_last_deg_per_h;  ///< deviations
   Figure drift_deg_per_h;  ///< last zero - first zero
   Figure closure_deg_per_h;

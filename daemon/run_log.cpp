@@ -33,12 +33,6 @@ std::string names(const Columns& columns) {
   return list;
 }
 
-std::string hexadecimal(std::span<const std::byte> bytes) {
-  std::string text;
-  for (const std::byte byte : bytes) text += fmt::format("{:02x}", std::to_integer<int>(byte));
-  return text;
-}
-
 }  // namespace
 
 struct RunLog::Statements {

@@ -311,4 +311,18 @@ Status RunLogReader::read_gyro(std::int64_t run,
   }
 }
 
+Result<std::string> RunLogReader::raw_sha256(std::int64_t run) {
+  auto select = database_->prepare("SELECT sha256 FROM gyro_chunks WHERE run = ? ORDER BY chunk");
+  if (!select) return select.error();
+  select->bind(run);
+  std::vector<std::byte> hashes;
+  while (true) {
+    const auto row = select->step();
+    if (!row) return row.error();
+    if (!*row) return hexadecimal(sha256_of(hashes));
+    const auto hash = select->blob(0);
+    hashes.insert(hashes.end(), hash.begin(), hash.end());
+  }
+}
+
 }  // namespace fogbench::daemon

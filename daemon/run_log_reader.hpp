@@ -73,6 +73,8 @@ class RunLogReader {
   /// chunk is kStore, with its number.
   Status read_gyro(std::int64_t run,
                    const std::function<Status(const drivers::GyroBlock& block)>& use);
+  /// The hash that the run's chunks have now: of an untouched run its raw_sha256.
+  Result<std::string> raw_sha256(std::int64_t run);
 
  private:
   RunLogReader(std::unique_ptr<Database> database, std::filesystem::path path);

@@ -33,6 +33,11 @@ inline void add_seed_option(CLI::App& app, std::optional<std::uint64_t>& seed) {
       ->check(digits);
 }
 
+inline void add_gyro_option(CLI::App& app, std::string& serial_number) {
+  app.add_option("--gyro", serial_number,
+                 "Serial number of the gyro under test (default: the bench file's)");
+}
+
 inline void add_speed_option(CLI::App& app, Speed& speed, const std::string& standard) {
   constexpr double kSlowest = 1.0, kFastest = 1000.0;
   const auto read = [](const std::string& text) -> std::optional<Speed> {

@@ -21,12 +21,6 @@ constexpr std::size_t kMostFittedWindows = 10'000;
 /// Below this many rows beyond the unknowns a noise spectrum cannot be told from a constant.
 constexpr std::size_t kEnoughRows = 20;
 
-double coverage_factor(double degrees_of_freedom) {
-  if (!(degrees_of_freedom > 0.0)) return kMissing;
-  const boost::math::students_t distribution(degrees_of_freedom);
-  return boost::math::quantile(distribution, (1.0 + kCoverage) / 2.0);
-}
-
 /// "a, b and c"
 std::string listed(const std::vector<std::string>& names) {
   if (names.size() < 2) return names.empty() ? "" : names.front();
@@ -215,6 +209,12 @@ Result<FitResult> hold(FitWork work) {
 }
 
 }  // namespace
+
+double coverage_factor(double degrees_of_freedom) {
+  if (!(degrees_of_freedom > 0.0)) return kMissing;
+  const boost::math::students_t distribution(degrees_of_freedom);
+  return boost::math::quantile(distribution, (1.0 + kCoverage) / 2.0);
+}
 
 Result<FitResult> fit(const Table& table, const config::ModelFile& model,
                       const FitOptions& options) {

@@ -29,6 +29,9 @@ struct FitOptions {
   bool as_is = false;     ///< hold every given coefficient, fit nothing
 };
 
+/// Student's t of 95.45 % coverage: 2 for many degrees of freedom, more for few, NaN for none.
+double coverage_factor(double degrees_of_freedom);
+
 /// One fitted number: a coefficient or an inner parameter.
 struct Estimate {
   std::string name;  ///< "magnetic_linear_z", "earth_rate_projection.cos", "warm_up.tau"

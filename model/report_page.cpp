@@ -116,15 +116,17 @@ std::pair<std::string, std::string> value_and_uncertainty(const Estimate& e) {
 
 }  // namespace
 
-std::string page_start(const std::string& title) {
+std::string page_start(const std::string& title, std::string_view language,
+                       std::string_view style) {
   return fmt::format(
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<!doctype html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n",
-      escaped(title), kStyle);
+      "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n",
+      language, escaped(title), kStyle, style);
 }
 
 std::string page_end(const std::string& rows_json) {
+  if (rows_json.empty()) return "</body>\n</html>\n";
   return fmt::format(
       "<div id=\"tip\" hidden=\"hidden\"></div>\n"
       "<script type=\"application/json\" id=\"rows\">{}</script>\n<script>{}</script>\n"

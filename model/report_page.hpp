@@ -11,10 +11,12 @@
 
 namespace fogbench::model {
 
-/// Everything up to the body's first element.
-std::string page_start(const std::string& title);
+/// Everything up to the body's first element. `style` follows the pages' own.
+std::string page_start(const std::string& title, std::string_view language = "en",
+                       std::string_view style = {});
 /// The rest, with `rows_json` for the script: what a pointed-at row shows (report_plots.hpp).
-std::string page_end(const std::string& rows_json);
+/// Without it the page has no script.
+std::string page_end(const std::string& rows_json = {});
 /// The script that says which row a point is and finds it again in the other plots.
 std::string_view page_script();
 

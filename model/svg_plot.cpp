@@ -30,9 +30,11 @@ Axis make_axis(double low, double high, double start, double end) {
   return {low - margin, high + margin, start, end};
 }
 
-std::string tick_text(double value, double span) {
+std::string tick_text(double value, double span, bool decimal_comma) {
   if (std::abs(value) < 1e-9 * span) value = 0.0;
-  return fmt::format("{:.6g}", value);
+  std::string text = fmt::format("{:.6g}", value);
+  if (decimal_comma) std::replace(text.begin(), text.end(), '.', ',');
+  return text;
 }
 
 bool is_finite(const std::pair<double, double>& point) {
@@ -156,11 +158,13 @@ class Drawing {
   void grid() {
     for (double tick : round_ticks(x_.low, x_.high)) {
       line("grid", x_(tick), kTop, x_(tick), kHeight - kBottom);
-      text("tick middle", x_(tick), kHeight - kBottom + 16.0, tick_text(tick, x_.high - x_.low));
+      text("tick middle", x_(tick), kHeight - kBottom + 16.0,
+           tick_text(tick, x_.high - x_.low, plot_.decimal_comma));
     }
     for (double tick : round_ticks(y_.low, y_.high)) {
       line("grid", kLeft, y_(tick), kWidth - kRight, y_(tick));
-      text("tick end", kLeft - 6.0, y_(tick) + 4.0, tick_text(tick, y_.high - y_.low));
+      text("tick end", kLeft - 6.0, y_(tick) + 4.0,
+           tick_text(tick, y_.high - y_.low, plot_.decimal_comma));
     }
   }
 

@@ -33,6 +33,7 @@ struct SvgPlot {
   bool zero_line = false;   ///< the line y = 0
   double envelope = 0.0;    ///< dashed lines at y = +-envelope; 0: none
   std::string kind;         ///< CSS class of the whole; empty: none
+  bool decimal_comma = false;
 
   /// Points that are not finite are left out; empty when none is left.
   std::string svg() const;

@@ -156,6 +156,12 @@ TEST(Limits, MistakesAreNamed) {
   EXPECT_THAT(with(R"([{"quantity": "K_z"}])"), HasSubstr("/limits/0: has neither \"minimum\""));
   EXPECT_THAT(with(R"([{"quantity": "K_z", "minimum": 2, "maximum": 1}])"),
               HasSubstr("/limits/0/minimum: found 2, expected at most the maximum 1"));
+  EXPECT_THAT(with(R"([{"quantity": "K_z", "repeatability": -1}])"),
+              HasSubstr("/limits/0/repeatability: found -1"));
+  EXPECT_THAT(with(R"([{"quantity": "K_z", "maximum": 1, "tests": 0}])"),
+              HasSubstr("/limits/0/tests: found 0"));
+  EXPECT_THAT(with(R"([{"quantity": "K_z", "maximum": 1}], "coverage_factor": 0)"),
+              HasSubstr("/coverage_factor: found 0"));
   EXPECT_THAT(
       with(R"([{"quantity": "K", "minimum": 2}, {"quantity": "K", "minimum": 1}])"),
       HasSubstr("/limits/1/quantity: found \"K\", expected a quantity that does not stand"));

@@ -1,0 +1,74 @@
+// fogbench passport: a gyro's passport, as a page that prints and as JSON.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "cli/output.hpp"
+#include "cli/passport_options.hpp"
+#include "config/output_file.hpp"
+#include "daemon/run_options.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+struct PassportCommandOptions {
+  PassportOptions passport;
+  std::string output;
+  daemon::Language language = daemon::Language::kEnglish;
+  bool json = false;
+};
+
+std::string document_of(const daemon::Passport& passport, const PassportCommandOptions& options) {
+  if (std::filesystem::path(options.output).extension() == ".json") {
+    return daemon::passport_json(passport).dump(2, ' ', false,
+                                                nlohmann::ordered_json::error_handler_t::replace) +
+           "\n";
+  }
+  return daemon::passport_html(passport, options.language);
+}
+
+Result<ExitStatus> run_passport(const PassportCommandOptions& options) {
+  if (options.output.empty() && !options.json) {
+    return Error{ErrorCode::kUsage,
+                 "-o FILE or --json was expected (see fogbench passport --help)"};
+  }
+  const auto passport = judge_runs(options.passport);
+  if (!passport) return passport.error();
+  if (!options.output.empty()) {
+    const Status written = config::write_file(options.output, document_of(*passport, options));
+    if (!written) return written.error();
+  }
+  if (options.json) {
+    print_json(daemon::passport_json(*passport));
+  } else if (options.output != "-") {
+    fmt::print("{}: gyro {}; {}\n", name_of(passport->judged.overall), passport->acceptance.gyro(),
+               options.output);
+  }
+  return ExitStatus::kDone;
+}
+
+}  // namespace
+
+void add_passport(CLI::App& app, Action& action) {
+  using daemon::Language;
+  add_command<PassportCommandOptions>(
+      app, action, "passport", "Write a gyro's passport: results, verdict, where they come from",
+      "  fogbench passport 7 -o passport.html --language ru\n"
+      "  fogbench passport 7 --limits my-gyro.json -o passport.json",
+      [](CLI::App& command, PassportCommandOptions& options) {
+        add_passport_options(command, options.passport);
+        command.add_option("-o,--output,--out", options.output,
+                           "File to write: JSON when its name ends with .json, else one HTML page");
+        daemon::add_choice_option<Language>(
+            command, "--language", options.language,
+            {{"en", Language::kEnglish}, {"ru", Language::kRussian}},
+            "Of the page: en or ru (default: en)");
+        command.add_flag("--json", options.json, "The passport as JSON on stdout");
+      },
+      run_passport);
+}
+
+}  // namespace fogbench::cli
