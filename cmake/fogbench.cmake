@@ -35,8 +35,10 @@ function(fogbench_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE
     ${ARG_LINKS} fogbench_test_support GTest::gtest_main GTest::gmock fogbench_warnings)
+  # Most of what a test does is in the rooms, and most of its build is the compiler's.
+  target_compile_options(${name} PRIVATE -O0)
   if(FOGBENCH_ALL_AT_ONCE)
-    target_precompile_headers(${name} REUSE_FROM fogbench_test_support)
+    target_precompile_headers(${name} REUSE_FROM fogbench_test_headers)
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
     PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})

@@ -22,11 +22,11 @@ constexpr std::array<SvgPlot::Mark, 2> kMarks{SvgPlot::Mark::kDot, SvgPlot::Mark
 using XY = std::vector<std::pair<double, double>>;
 
 double coefficient_of(const TestResults& test, const std::string& name) {
-  if (!test.fit) return NAN;
+  if (!test.fit) return std::nan("");
   for (const model::Estimate& e : test.fit->estimates) {
     if (e.name == name) return e.value;
   }
-  return NAN;
+  return std::nan("");
 }
 
 /// `shape` over the range of the measurements, moved to their mean.

@@ -53,7 +53,7 @@ TEST(Conformity, GuardBandStandsOnEitherSideOfTheLimit) {
 TEST(Conformity, WhatIsNotANumberNeverPasses) {
   EXPECT_EQ(judge(kMissing, 0.1, {}, 0.5), Conformity::kIndeterminate);
   EXPECT_EQ(judge(0.1, kMissing, {}, 0.5), Conformity::kIndeterminate);
-  EXPECT_EQ(judge(0.1, INFINITY, -0.5, 0.5), Conformity::kIndeterminate);
+  EXPECT_EQ(judge(0.1, HUGE_VAL, -0.5, 0.5), Conformity::kIndeterminate);
 }
 
 TEST(Conformity, AMissingQuantityIsSaidToBeMissing) {
