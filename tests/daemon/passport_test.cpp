@@ -64,8 +64,10 @@ class PassportTest : public testing::Test {
   void record(const std::string& gyro, procedures::RunOutcome outcome, int tests = 2) {
     auto log = RunLog::open(folder_ / "store.db");
     ASSERT_TRUE(log);
-    ASSERT_TRUE((*log)->begin_run(header_of(gyro),
-                                  {{"gyro", "FOG", gyro, "", ""},
+    procedures::RunHeader header = header_of(gyro);
+    if (takes_up_ != 0) header.continues.emplace().run = takes_up_;
+    ASSERT_TRUE(
+        (*log)->begin_run(header, {{"gyro", "FOG", gyro, "", ""},
                                    {"magnetometer", "MAG", "M-1", "2025-02-01", "2026-02-01"},
                                    {"thermostat", "TH", "T-1", "2026-01-01", "2027-01-01"}}));
     std::mt19937 random(7);
