@@ -167,7 +167,9 @@ Result<RunProvenance> provenance_of(RunLogReader& reader, std::int64_t number) {
   auto hash = reader.raw_sha256(number);
   if (!hash) return hash.error();
   RunProvenance made{std::move(*run), std::move(*instruments), std::move(*hash)};
-  made.raw_data_intact = !made.run.end || made.raw_sha256 == made.run.raw_sha256;
+  // Nobody ended an interrupted run: there is nothing to hold its data against.
+  const bool ended = made.run.end && made.run.end->outcome != procedures::RunOutcome::kInterrupted;
+  made.raw_data_intact = !ended || made.raw_sha256 == made.run.raw_sha256;
   return made;
 }
 
