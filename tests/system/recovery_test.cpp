@@ -1,4 +1,5 @@
-// What a served bench survives: the death of its daemon, a full disk, a store that is moved away.
+// What a served bench survives: the death of its daemon, a full disk, a store that is moved away, a
+// thousand clients.
 
 #include <sys/resource.h>
 
@@ -6,6 +7,7 @@
 #include <csignal>
 #include <thread>
 
+#include "tests/support/polling_clients.hpp"
 #include "tests/system/control_fixture.hpp"
 
 namespace fogbench::system_tests {
@@ -125,6 +127,22 @@ TEST_F(RecoveryTest, AStoreThatIsMovedAwayHoldsTheRunUntilItIsBack) {
   fs::rename(away, store());
   EXPECT_EQ(fogbench({"watch"}).status, 0);
   EXPECT_EQ(points_in_order("1"), 40U);
+}
+
+TEST_F(RecoveryTest, AThousandClientsThatPollDoNotDisturbARun) {
+  const auto daemon = serve();
+  json({"run", procedure("long", 20), "--json"});
+  wait_for_points(1);
+  test::PollingClients clients(socket(), 1000);
+  EXPECT_EQ(clients.connected(), 1000U);
+  clients.poll_for(3s, 500ms);
+  EXPECT_GT(clients.answers(), 1000U);
+  EXPECT_EQ(fogbench({"watch"}).status, 0) << "an operator gets through";
+  const auto run = stored("1");
+  EXPECT_EQ(run["outcome"], "completed");
+  EXPECT_EQ(run["stream"]["frames_missing"], 0);
+  EXPECT_EQ(run["stream"]["frames_repeated"], 0);
+  EXPECT_EQ(points_in_order("1"), 20U);
 }
 
 }  // namespace
