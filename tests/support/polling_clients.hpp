@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -30,11 +31,12 @@ class PollingClients {
     address.sun_family = AF_UNIX;
     socket.copy(address.sun_path, sizeof address.sun_path - 1);
     for (std::size_t i = 0; i < count; ++i) {
-      drivers::FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-      if (connect(client.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+      const Client& client = clients_.emplace_back();
+      const int fd = client.socket.get();
+      if (connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+        clients_.pop_back();
         break;
       }
-      clients_.push_back({std::move(client), {}, {}, false});
     }
   }
 
@@ -71,9 +73,9 @@ class PollingClients {
 
  private:
   struct Client {
-    drivers::FileDescriptor socket;
+    drivers::FileDescriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
     Clock::time_point due, asked_at;
-    bool asked;
+    bool asked = false;
   };
 
   static void ask(Client& client) {
@@ -91,7 +93,7 @@ class PollingClients {
     client.due = client.asked_at + period;
   }
 
-  std::vector<Client> clients_;
+  std::deque<Client> clients_;  // none of them moves
   std::vector<double> latencies_ms_;
 };
 

@@ -1,0 +1,152 @@
+#include "daemon/resumption.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/run_log.hpp"
+#include "daemon/simulated_operator.hpp"
+#include "tests/support/source_tree.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fogbench::daemon {
+namespace {
+
+using testing::HasSubstr;
+
+/// A store with one run of two averages, which ended in the middle of the second one.
+class ResumptionTest : public testing::Test {
+ protected:
+  ResumptionTest() {
+    const auto ready = tests::source_tree() / "config";
+    auto setup = load_setup(
+        {(ready / "benches/simulated.json").string(), (ready / "scenarios/clean.json").string()});
+    EXPECT_TRUE(setup) << setup.error().message;
+    setup_ = std::move(*setup);
+    const auto file = folder_.file("two.json", R"({"name": "two", "steps": [
+        {"step": "average", "duration_s": 5, "segment": "a"},
+        {"step": "average", "duration_s": 5, "segment": "b"}]})");
+    auto planned = plan_procedure(file.string(), setup_.bench, {});
+    EXPECT_TRUE(planned) << planned.error().message;
+    std::filesystem::remove(file);  // the record is enough
+    header_.procedure = "two";
+    header_.procedure_json = planned->procedure_json;
+    header_.bench = setup_.bench.name;
+    header_.bench_json = setup_.bench_json;
+    header_.scenario_json = setup_.scenario_json;
+    header_.started_at = "2026-01-01T00:00:00Z";
+  }
+
+  void interrupt(const std::string& gyro = "SIM-FOG-1") {
+    const auto log = RunLog::open(store_);
+    ASSERT_TRUE(log) << log.error().message;
+    ASSERT_TRUE((*log)->begin_run(header_, {{"gyro", identity_, gyro, "", ""}}));
+    ASSERT_TRUE((*log)->step_started("1", "average", 0.0));
+    procedures::Point point;
+    point.segment = "a";
+    point.time_s = 2.5;
+    point.duration_s = 5.0;
+    ASSERT_TRUE((*log)->point(point));
+    ASSERT_TRUE((*log)->step_ended("1", 5.0, ""));
+    ASSERT_TRUE((*log)->step_started("2", "average", 5.0));
+  }
+  Result<PlannedProcedure> plan(std::int64_t run = 1) {
+    const auto log = RunLogReader::open(store_);
+    EXPECT_TRUE(log) << log.error().message;
+    return plan_resumption(**log, run, setup_);
+  }
+  std::string refusal(std::int64_t run = 1) {
+    const auto planned = plan(run);
+    if (planned) return "taken up";
+    EXPECT_EQ(planned.error().code, ErrorCode::kBadInput);
+    return planned.error().message;
+  }
+
+  support::TemporaryFolder folder_;
+  std::filesystem::path store_{folder_ / "store.db"};
+  daemon::Setup setup_;
+  procedures::RunHeader header_;
+  std::string identity_ = "KVH 1750/DSP-1760 layout, rotation rate in deg/s";
+};
+
+TEST_F(ResumptionTest, GoesOnAtTheStepThatWasInterruptedWithTheRecordedProcedure) {
+  interrupt();
+  const auto planned = plan();
+  ASSERT_TRUE(planned) << planned.error().message;
+  ASSERT_EQ(planned->plan.steps.size(), 1U);
+  EXPECT_EQ(planned->plan.steps[0].path, "2");
+  EXPECT_EQ(planned->takes_up->continuation.first_step, "2");
+  EXPECT_EQ(planned->procedure_json, header_.procedure_json);
+  EXPECT_EQ(planned->takes_up->stopped_at_s, drivers::seconds_of_utc("2026-01-01T00:00:05Z"));
+}
+
+TEST_F(ResumptionTest, OnlyARunOfThisVeryBenchIsTakenUp) {
+  header_.bench_json += " ";
+  interrupt();
+  EXPECT_THAT(refusal(), HasSubstr("the bench's file, or one of its instruments', was another"));
+  header_.bench_json = setup_.bench_json;
+  header_.scenario_json += " ";
+  interrupt();
+  EXPECT_THAT(refusal(2), HasSubstr("another scenario"));
+  header_.scenario_json = setup_.scenario_json;
+  header_.bench = "factory";
+  interrupt();
+  EXPECT_THAT(refusal(3), HasSubstr("it is of bench factory, expected simulated"));
+  EXPECT_THAT(refusal(4), HasSubstr("no run 4"));
+}
+
+TEST_F(ResumptionTest, ADamagedRecordIsSaidToBeOne) {
+  for (const char* record : {"", "{", "[]", R"({"files": {}, "parameters": {}})",
+                             R"({"files": {"a.json": 7}, "parameters": {}})",
+                             R"({"files": {"a.json": "{}"}, "parameters": {"x": "y"}})"}) {
+    header_.procedure_json = record;
+    std::filesystem::remove(store_);
+    interrupt();
+    EXPECT_FALSE(plan()) << record;
+  }
+}
+
+TEST_F(ResumptionTest, OtherInstrumentsThanThoseOfTheRecordDoNotGoOn) {
+  const auto take_up = [this](std::int64_t run) {
+    auto planned = plan(run);
+    EXPECT_TRUE(planned) << planned.error().message;
+    SimulatedOperator person;
+    const auto session = Session::open(setup_, 1, store_, Speed::kMaximum, person);
+    EXPECT_TRUE(session) << session.error().message;
+    return (*session)->run(*planned);
+  };
+  interrupt("ANOTHER-1");
+  const auto refused = take_up(1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kDevice);
+  EXPECT_THAT(refused.error().message, HasSubstr("serial number \"ANOTHER-1\", which measured"));
+  EXPECT_EQ(refusal(1), "taken up") << "nothing was begun: it can still be taken up";
+
+  interrupt();
+  const auto done = take_up(2);
+  ASSERT_TRUE(done) << done.error().message;
+  const auto log = RunLogReader::open(store_);
+  const auto points = (*log)->chain_points(done->run);
+  ASSERT_TRUE(points);
+  ASSERT_EQ(points->size(), 2U);
+  EXPECT_EQ((*points)[1].point.segment, "b");
+  EXPECT_GT((*points)[1].point.time_s, 7.0) << "on one axis of time";
+  EXPECT_THAT(refusal(2), HasSubstr("did already"));
+  EXPECT_THAT(refusal(done->run), HasSubstr("it was completed"));
+}
+
+TEST_F(ResumptionTest, TheLastRunOfTheBenchIsOfferedWhenNobodyEndedIt) {
+  const auto offered = [this]() -> std::int64_t {
+    const auto log = RunLogReader::open(store_);
+    const auto run = interrupted_run(**log, setup_.bench.name);
+    EXPECT_TRUE(run) << run.error().message;
+    return *run ? (*run)->run : 0;
+  };
+  interrupt();
+  EXPECT_EQ(offered(), 1);
+  const auto log = RunLog::open(store_);
+  ASSERT_TRUE((*log)->give_up(1, "given up by alice"));
+  EXPECT_EQ(offered(), 0);
+}
+
+}  // namespace
+}  // namespace fogbench::daemon
