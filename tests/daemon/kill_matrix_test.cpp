@@ -256,6 +256,7 @@ TEST_F(KillMatrix, AfterEveryRecordTheRunIsTakenUpWithNothingLostOrDoubled) {
   for (int record = 1; record <= records_ && !HasFailure(); ++record) {
     kill_and_take_up(Deadly::kRecord, record);
   }
+  RecordProperty("kills", kills_);
   EXPECT_EQ(kills_, records_);
   EXPECT_GE(kills_, 40);
 }
@@ -275,6 +276,7 @@ TEST_F(KillMatrix, ARunThatTakesUpAnotherMayBeKilledItself) {
   for (int i = 0; i < 20 && !HasFailure(); ++i) {
     kill_and_take_up(Deadly::kRecord, std::uniform_int_distribution<int>(4, records_)(random), 2);
   }
+  RecordProperty("kills", kills_);
   EXPECT_GE(kills_, 40);
 }
 
@@ -310,6 +312,7 @@ TEST_F(KillMatrix, AJournalCutAnywhereIsReadUpToTheCut) {
       EXPECT_TRUE(planned) << planned.error().message;
     }
   }
+  RecordProperty("cuts", static_cast<int>(cuts));
   EXPECT_GT(cuts, 500U);
 }
 
