@@ -159,7 +159,7 @@ TEST(Month, OfNightsWithFaultsAndPromptsLeavesNothingBehindAndLosesNoRun) {
       "{} runs: {} completed, {} aborted, {} failed, {} not begun; {} faults, {} answers, {} "
       "pauses, {} aborts; {:+.1f} MB\n",
       runs, outcomes["completed"], outcomes["aborted"], outcomes["failed"], outcomes["not begun"],
-      0, answers, pauses, aborts, grown_mb);
+      faulty.size(), answers, pauses, aborts, grown_mb);
   EXPECT_GT(outcomes["completed"], 40);
   EXPECT_GT(answers, 10);
   EXPECT_GT(pauses, 10);

@@ -64,9 +64,9 @@ class RealKernel : public testing::Test {
     return text.str();
   }
 
-  /// The only run of the guest's store `name`.
-  static nlohmann::json run(const std::string& name) {
-    const auto shown = support::run({tests::build_tree() / "fogbench", "show", "1", "--store",
+  /// A run of the guest's store `name`.
+  static nlohmann::json run(const std::string& name, const std::string& number = "1") {
+    const auto shown = support::run({tests::build_tree() / "fogbench", "show", number, "--store",
                                      kResults / (name + ".db"), "--json"});
     EXPECT_EQ(shown.status, 0) << shown.err;
     return nlohmann::json::parse(shown.out, nullptr, false);
@@ -145,6 +145,27 @@ TEST_F(RealKernel, ASweepIsInterruptedByAPulledPlugAndBeginsAnew) {
   EXPECT_EQ(run["points_void"], 1);
   std::vector<double> fields_ut;
   for (const auto& point : run["measured"]) fields_ut.push_back(point["field_x_ut"]);
+  EXPECT_THAT(fields_ut, ElementsAre(DoubleNear(0.0, 2.0), DoubleNear(0.0, 2.0),
+                                     DoubleNear(200.0, 2.0), DoubleNear(0.0, 2.0)));
+}
+
+TEST_F(RealKernel, ADaemonThatIsKilledInASweepLeavesCurrentThatTheNextOneSwitchesOff) {
+  EXPECT_EQ(result("resumed.status"), "0\n") << result("resumed.log");
+  // From the kill to the safe state, read back from both supplies, on the emulated machine.
+  std::istringstream times(result("killed.times"));
+  double killed_s = 0.0, safe_s = 0.0;
+  ASSERT_TRUE(times >> killed_s >> safe_s);
+  EXPECT_LT(safe_s - killed_s, 15.0) << result("resumed.log");
+
+  const auto before = run("killed"), after = run("killed", "2");
+  EXPECT_EQ(before["outcome"], "interrupted") << result("resume");
+  EXPECT_EQ(before["points_void"], 1);
+  EXPECT_EQ(after["outcome"], "completed");
+  EXPECT_EQ(after["takes_up"], 1);
+  EXPECT_EQ(after["safe_state_reached"], true);
+  EXPECT_THAT(events(after), HasSubstr("takes up run 1 at step 2.1"));
+  std::vector<double> fields_ut;
+  for (const auto& point : after["measured"]) fields_ut.push_back(point["field_x_ut"]);
   EXPECT_THAT(fields_ut, ElementsAre(DoubleNear(0.0, 2.0), DoubleNear(0.0, 2.0),
                                      DoubleNear(200.0, 2.0), DoubleNear(0.0, 2.0)));
 }
