@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "daemon/desk_operator.hpp"
+#include "daemon/desk_recorder.hpp"
+#include "daemon/names.hpp"
 #include "drivers/open_bench.hpp"
 #include "procedures/expand.hpp"
 #include "simulator/simulated_bench.hpp"
@@ -18,11 +21,6 @@ using config::Axis;
 using procedures::test::step;
 
 constexpr double kBiasDegPerH = 0.7;
-
-class NobodyThere final : public drivers::Operator {
- public:
-  Result<bool> confirm(const std::string&) override { return false; }
-};
 
 procedures::Plan make_short_plan(const config::BenchConfig& bench) {
   const auto no_calls = [](const std::string& name, const config::ProcedureConfig&) {
@@ -70,19 +68,35 @@ Trial run_with(const std::optional<config::FaultSpec>& fault, const config::Benc
 
   Trial trial;
   drivers::VirtualClock clock;
-  NobodyThere nobody;
+  // As fogbenchd has it: between the engine and the record stands the operators' desk.
+  daemon::RunDesk desk;
+  daemon::DeskRecorder record(trial.log, desk);
+  daemon::DeskOperator person(desk);
   auto ends = simulator::simulate_bench(config, scenario, 1, clock);
   EXPECT_TRUE(ends) << ends.error().message;
-  auto bench = drivers::open_bench(config, *std::move(ends), clock, nobody);
+  auto bench = drivers::open_bench(config, *std::move(ends), clock, person);
   trial.opened = static_cast<bool>(bench);
   if (!bench) {
     trial.open_error = bench.error().message;
     return trial;
   }
-  procedures::RunEngine engine(config, *bench, clock, nobody, trial.log);
-  const auto summary = engine.run(plan, {});
+  procedures::RunEngine engine(config, *bench, clock, person, record);
+  engine.wait_for_record();
+  engine.on_progress([&desk](const procedures::Progress& now) { desk.progressed(now); });
+  desk.attach(engine);
+  person.attach(engine);
+  desk.enqueue({}, {plan, {}, {}}, {"alice", 1000});
+  const auto job = desk.next_job();
+  const auto summary = engine.run(job->procedure.plan, {});
+  desk.run_ended(summary);
   EXPECT_TRUE(summary) << summary.error().message;
-  if (summary) trial.summary = *summary;
+  if (summary) {
+    trial.summary = *summary;
+    const auto shown = desk.view().last_run;
+    EXPECT_EQ(shown->outcome, daemon::name_of(summary->end.outcome));
+    EXPECT_EQ(shown->safe_state_reached, summary->end.safe_state_reached);
+    EXPECT_EQ(shown->points, summary->points);
+  }
   trial.ended_s = drivers::to_seconds(clock.now().time_since_epoch());
   return trial;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// One short run on the simulated bench with one fault, through the real drivers and the run engine,
-// on the virtual clock; and what it came to.
+// One short run on the simulated bench with one fault, through the real drivers, the run engine and
+// the daemon's desk, on the virtual clock; and what it came to.
 
 #include <optional>
 #include <string>
