@@ -31,7 +31,7 @@ std::size_t remove_repeats(std::size_t first, std::int64_t highest, GyroBlock& b
 
 void FrameCounter::settle(std::optional<Clock::Instant> empty_at, std::int64_t periods_since,
                           std::size_t entries, GyroBlock& block, StreamStatistics& statistics) {
-  if (last_index_ < 0) return;
+  if (last_sequence_ < 0) return;
   const std::size_t first = block.index.size() - entries;
   const std::int64_t turns = empty_at ? missing_turns(*empty_at, periods_since) : 0;
   if (turns != 0) {
@@ -70,7 +70,7 @@ double FrameCounter::least_late(Clock::Instant empty_at, std::int64_t periods_si
 }
 
 bool FrameCounter::misses_turns(Clock::Instant empty_at, std::int64_t periods_since) {
-  return last_index_ >= 0 && turns_in(least_late(empty_at, periods_since)) > 0 && lost_before();
+  return last_sequence_ >= 0 && turns_in(least_late(empty_at, periods_since)) > 0 && lost_before();
 }
 
 std::int64_t FrameCounter::missing_turns(Clock::Instant empty_at, std::int64_t periods_since) {
