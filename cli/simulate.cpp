@@ -1,15 +1,12 @@
 // fogbench simulate --serve: the simulated bench at the wire.
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "cli/command.hpp"
 #include "cli/output.hpp"
@@ -17,13 +14,13 @@
 #include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
+#include "config/scratch_folder.hpp"
 #include "daemon/run_options.hpp"
 #include "daemon/session.hpp"
 #include "simulator/wire/file_descriptor.hpp"
 #include "simulator/wire/served_bench.hpp"
 
 namespace fogbench::cli {
-namespace fs = std::filesystem;
 
 using simulator::ServedBench;
 using simulator::ServedInstrument;
@@ -72,33 +69,6 @@ class StopSignal {
  private:
   sigset_t before_{};
   simulator::FileDescriptor descriptor_;
-};
-
-/// Where the links to the serial lines stand while the bench is served.
-class TtyFolder {
- public:
-  static Result<TtyFolder> make() {
-    std::error_code error;
-    const fs::path root = fs::temp_directory_path(error);
-    std::string pattern = (root / "fogbench-XXXXXX").string();
-    if (error || mkdtemp(pattern.data()) == nullptr) {
-      return Error{ErrorCode::kDevice,
-                   pattern + ": the folder for the serial lines cannot be made"};
-    }
-    return TtyFolder(pattern);
-  }
-  TtyFolder(TtyFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  TtyFolder& operator=(TtyFolder&&) = delete;
-  ~TtyFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-
-  const fs::path& path() const { return path_; }
-
- private:
-  explicit TtyFolder(fs::path path) : path_(std::move(path)) {}
-  fs::path path_;
 };
 
 /// The command that makes the kernel take the device.
@@ -170,7 +140,8 @@ Result<ExitStatus> run_simulate(const SimulateOptions& options) {
   if (!setup) return setup.error();
   const std::uint64_t seed = options.seed.value_or(daemon::random_seed());
   const StopSignal stop;
-  const auto ttys = TtyFolder::make();
+  // Where the links to the serial lines stand while the bench is served.
+  const auto ttys = config::ScratchFolder::make();
   if (!ttys) return ttys.error();
   const drivers::SteadyClock clock(options.speed);
   const auto bench = ServedBench::open(setup->bench, setup->scenario, seed,

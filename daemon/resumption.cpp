@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
+#include "config/scratch_folder.hpp"
 #include "daemon/parameters_json.hpp"
 #include "procedures/resume_plan.hpp"
 
@@ -19,31 +19,6 @@ using procedures::Continuation;
 using procedures::Plan;
 
 namespace {
-
-/// Gone with its files when it goes out of scope.
-class ScratchFolder {
- public:
-  static Result<ScratchFolder> make() {
-    std::error_code error;
-    std::string pattern = (fs::temp_directory_path(error) / "fogbench-XXXXXX").string();
-    if (error || mkdtemp(pattern.data()) == nullptr) {
-      return Error{ErrorCode::kStore, fmt::format("{}: no scratch folder: {}", pattern,
-                                                  std::generic_category().message(errno))};
-    }
-    return ScratchFolder(pattern);
-  }
-  ScratchFolder(ScratchFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  ScratchFolder& operator=(ScratchFolder&&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  explicit ScratchFolder(fs::path path) : path_(std::move(path)) {}
-  fs::path path_;
-};
 
 Error damaged(std::int64_t run) {
   return config::bad_input(fmt::format("run {}: its record of the procedure is damaged", run));
@@ -60,7 +35,7 @@ Result<PlannedProcedure> recorded_procedure(const StoredRun& run,
   }
   const auto parameters = parameters_of(record["parameters"]);
   if (!parameters) return damaged(run.run);
-  const auto folder = ScratchFolder::make();
+  const auto folder = config::ScratchFolder::make();
   if (!folder) return folder.error();
   for (const auto& [name, text] : record["files"].items()) {
     const fs::path file = folder->path() / fs::path(name).filename();
