@@ -82,8 +82,10 @@ Outcome watch(const json& params, Caller& caller) {
 }
 
 RpcError refusal(const Error& error) {
-  const bool limit = error.code == ErrorCode::kLimit;
-  return {limit ? RpcCode::kLimit : RpcCode::kBadInput, error.message};
+  const RpcCode code = error.code == ErrorCode::kLimit   ? RpcCode::kLimit
+                       : error.code == ErrorCode::kStore ? RpcCode::kStore
+                                                         : RpcCode::kBadInput;
+  return {code, error.message};
 }
 
 Outcome enqueue(RunDesk& desk, Order order, PlannedProcedure planned, const Person& by) {
@@ -124,18 +126,16 @@ Outcome resume_run(RunDesk& desk, const Setup& setup, const std::filesystem::pat
   return enqueue(desk, Order{{}, {}, run}, std::move(*planned), by);
 }
 
+/// Nobody else fills the queue meanwhile: that is this thread's.
 Outcome discard_run(RunDesk& desk, const std::filesystem::path& store, std::int64_t run,
                     const Caller& caller) {
-  const auto& offered = desk.view().interrupted;
-  if (!offered || offered->run != run) {
-    return RpcError{RpcCode::kNotFound, fmt::format("run {} does not wait to be taken up", run)};
-  }
+  if (const auto refused = desk.may_discard(run)) return *refused;
   const Person by = person_of(caller, fmt::format("discard run {}", run));
   const auto log = RunLog::open(store);
   if (!log) return refusal(log.error());
   const Status given_up = (*log)->give_up(run, "given up by " + by.name);
   if (!given_up) return refusal(given_up.error());
-  desk.withdraw_offer(run);
+  desk.withdraw_offer();
   return ordered_json::object();
 }
 

@@ -36,6 +36,9 @@ std::variant<std::uint64_t, RpcError> RunDesk::enqueue(Order order, PlannedProce
   if (queue_.size() == kMostJobs) {
     return RpcError{RpcCode::kQueueFull, fmt::format("the queue holds {} runs already", kMostJobs)};
   }
+  if (order.takes_up != 0 && takes_up(order.takes_up)) {
+    return wrong_state(fmt::format("a job takes up run {} already", order.takes_up));
+  }
   // Nothing waits behind what failed: whoever asks now wants this run.
   if (queue_.empty() || order.takes_up != 0) view_.held = false;
   const auto place = order.takes_up != 0 ? queue_.begin() : queue_.end();
@@ -161,12 +164,27 @@ void RunDesk::offer(InterruptedRun run) {
   changed();
 }
 
-bool RunDesk::withdraw_offer(std::int64_t run) {
+bool RunDesk::takes_up(std::int64_t run) const {
+  return (starting_ && starting_->first.takes_up == run) ||
+         std::any_of(queue_.begin(), queue_.end(),
+                     [run](const Job& job) { return job.order.takes_up == run; });
+}
+
+RunDesk::Refused RunDesk::may_discard(std::int64_t run) const {
   const Lock lock(mutex_);
-  if (!view_.interrupted || view_.interrupted->run != run) return false;
+  if (!view_.interrupted || view_.interrupted->run != run) {
+    return RpcError{RpcCode::kNotFound, fmt::format("run {} does not wait to be taken up", run)};
+  }
+  if (takes_up(run)) {
+    return wrong_state(fmt::format("a job takes up run {}: remove it from the queue first", run));
+  }
+  return {};
+}
+
+void RunDesk::withdraw_offer() {
+  const Lock lock(mutex_);
   view_.interrupted.reset();
   changed();
-  return true;
 }
 
 void RunDesk::hold() {

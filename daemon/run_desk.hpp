@@ -126,7 +126,8 @@ class RunDesk {
 
   // --- The control socket's thread. A refusal is an RpcError.
   using Refused = std::optional<RpcError>;
-  /// A run that is taken up goes before what waits, and what waits goes on after it.
+  /// A run that is taken up goes before what waits, and what waits goes on after it. Only one job
+  /// takes a run up.
   std::variant<std::uint64_t, RpcError> enqueue(Order order, PlannedProcedure procedure,
                                                 const Person& by);
   Refused remove(std::uint64_t job, const Person& by);
@@ -148,8 +149,9 @@ class RunDesk {
   };
   Waiting waiting() const;
   void offer(InterruptedRun run);
-  /// The run that was offered is given up. False: none of that number was.
-  bool withdraw_offer(std::int64_t run);
+  /// Whether the run that was offered may be given up: not when a job takes it up.
+  Refused may_discard(std::int64_t run) const;
+  void withdraw_offer();
   /// Nothing begins until somebody resumes.
   void hold();
   /// An abort has been asked for and the bench is not safe yet.
@@ -186,8 +188,9 @@ class RunDesk {
   void withdraw();
 
  private:
-  /// Both with the mutex held.
+  /// All with the mutex held.
   void note(const std::string& action, const Person& by);
+  bool takes_up(std::int64_t run) const;
   void changed() { ++view_.version; }
 
   mutable std::mutex mutex_;

@@ -110,6 +110,9 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
   if (!insert) return insert.error();
   if (!instrument) return instrument.error();
   const Status written = commit(Sync::kFull, [&]() -> Status {
+    if (header.continues) {
+      if (const Status free = check_free(header.continues->run); !free) return free;
+    }
     insert->bind(header.procedure).bind(header.procedure_json);
     insert->bind(header.bench).bind(header.bench_json);
     header.scenario_json.empty() ? insert->bind_null() : insert->bind(header.scenario_json);
@@ -138,6 +141,16 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
   });
   if (!written) return written.error();
   return run_;
+}
+
+/// What a run has measured must not be counted by two others.
+Status RunLog::check_free(std::int64_t run) {
+  const auto other = database_->integer(
+      fmt::format("SELECT coalesce(max(run), 0) FROM runs WHERE continues = {}", run));
+  if (!other) return other.error();
+  if (*other == 0) return {};
+  return Error{ErrorCode::kBadInput,
+               fmt::format("run {} cannot be taken up: run {} did already", run, *other)};
 }
 
 /// Together with the begin of the run that takes it up: never one without the other.

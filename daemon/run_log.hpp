@@ -47,6 +47,7 @@ class RunLog final : public procedures::Recorder {
   /// Runs `write` and whatever waits in one transaction.
   template <class Write>
   Status commit(Sync sync, Write write);
+  Status check_free(std::int64_t run);
   Status take_up(const procedures::Continuation& before);
   Status write_monitor();
   Status write_chunk(std::size_t frames);

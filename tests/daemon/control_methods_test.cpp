@@ -203,6 +203,9 @@ TEST_F(ControlMethodsTest, AnInterruptedRunIsTakenUpOrGivenUp) {
   EXPECT_EQ(job["held"], false);
   EXPECT_EQ(desk_.waiting().orders.front().first.takes_up, 1);
 
+  EXPECT_EQ(refusal("resume", {{"run", 1}}, operator_), RpcCode::kWrongState) << "once is enough";
+  EXPECT_EQ(refusal("discard", {{"run", 1}}, operator_), RpcCode::kWrongState);
+  result("remove", {{"job", job["job"]}});
   result("discard", {{"run", 1}});
   EXPECT_TRUE(result("status")["interrupted"].is_null());
   const auto log = RunLogReader::open(store);

@@ -134,6 +134,20 @@ TEST_F(ResumptionTest, OtherInstrumentsThanThoseOfTheRecordDoNotGoOn) {
   EXPECT_THAT(refusal(done->run), HasSubstr("it was completed"));
 }
 
+TEST_F(ResumptionTest, TwoRunsNeverTakeUpTheSame) {
+  interrupt();
+  const auto first = plan(), second = plan();
+  ASSERT_TRUE(first && second);
+  SimulatedOperator person;
+  const auto session = Session::open(setup_, 1, store_, Speed::kMaximum, person);
+  ASSERT_TRUE(session) << session.error().message;
+  ASSERT_TRUE((*session)->run(*first));
+  const auto refused = (*session)->run(*second);
+  ASSERT_FALSE(refused) << "it was planned before the first had begun";
+  EXPECT_THAT(refused.error().message, HasSubstr("run 1 cannot be taken up: run 2 did already"));
+  EXPECT_THAT(refusal(3), HasSubstr("no run 3"));
+}
+
 TEST_F(ResumptionTest, TheLastRunOfTheBenchIsOfferedWhenNobodyEndedIt) {
   const auto offered = [this]() -> std::int64_t {
     const auto log = RunLogReader::open(store_);
