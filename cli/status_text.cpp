@@ -34,6 +34,10 @@ std::string span_text(const json& seconds) {
   return procedures::duration_text(config::Seconds{std::round(real(seconds))});
 }
 
+std::string points_text(const json& points) {
+  return plain(points) + (points == 1 ? " point" : " points");
+}
+
 /// "temperature working 1  21.01 degC", two to a line. The units of these values have no '_'.
 std::string values_text(const json& values) {
   std::string lines, left;
@@ -65,8 +69,8 @@ std::string status_text(const json& status) {
                        plain(at(run, "run")), plain(at(run, "procedure")), plain(at(run, "by")));
     out += fmt::format("step {} of {}: {}\n", plain(at(run, "step")), plain(at(run, "steps")),
                        plain(at(run, "says")));
-    out += fmt::format("{} so far, about {} left, {} points\n", span_text(at(run, "elapsed_s")),
-                       span_text(at(run, "remaining_s")), plain(at(run, "points")));
+    out += fmt::format("{} so far, about {} left, {}\n", span_text(at(run, "elapsed_s")),
+                       span_text(at(run, "remaining_s")), points_text(at(run, "points")));
     if (at(run, "abort_requested") == true) {
       out += "an abort has been asked for\n";
     } else if (at(run, "pause_requested") == true && at(status, "state") != "paused") {
@@ -75,15 +79,20 @@ std::string status_text(const json& status) {
   } else {
     out += plain(at(status, "state")) + ": nothing is running\n";
     const json& last = at(status, "last_run");
-    if (last.is_object()) out += "last: " + ended_text(last) + "\n";
+    if (last.is_object()) {
+      out += "last: " + ended_text(last) + "\n";
+      if (at(last, "outcome") != "completed" && at(last, "run").is_number()) {
+        out += fmt::format("(fogbench resume {} takes it up)\n", plain(at(last, "run")));
+      }
+    }
   }
   const json& interrupted = at(status, "interrupted");
   if (interrupted.is_object()) {
     const std::string number = plain(at(interrupted, "run"));
     out += fmt::format(
-        "run {}, {}, was interrupted with {} points: fogbench resume {} takes it up,\n"
+        "run {}, {}, was interrupted after {}: fogbench resume {} takes it up,\n"
         "fogbench resume {} --discard gives it up\n",
-        number, plain(at(interrupted, "procedure")), plain(at(interrupted, "points")), number,
+        number, plain(at(interrupted, "procedure")), points_text(at(interrupted, "points")), number,
         number);
   }
   const json& queue = at(status, "queue");
@@ -116,9 +125,9 @@ std::string status_text(const json& status) {
 
 std::string ended_text(const json& ended) {
   return fmt::format(
-      "run {}, {}: {}, {}, {} points; the bench is {}", plain(at(ended, "run")),
+      "run {}, {}: {}, {}, {}; the bench is {}", plain(at(ended, "run")),
       plain(at(ended, "procedure")), plain(at(ended, "outcome")), plain(at(ended, "reason")),
-      plain(at(ended, "points")),
+      points_text(at(ended, "points")),
       at(ended, "safe_state_reached") == true ? "in its safe state" : "NOT in its safe state");
 }
 
