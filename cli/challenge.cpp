@@ -96,7 +96,7 @@ std::vector<std::string> effects_of(const config::ModelFile& model) {
   return names;
 }
 
-Status write_points(const std::vector<procedures::Point>& points, const fs::path& file) {
+Status write_file_of(const std::vector<procedures::Point>& points, const fs::path& file) {
   auto out = config::OutputFile::open(file);
   if (!out) return out.error();
   if (const Status written = daemon::write_points(points, **out); !written) return written;
@@ -113,7 +113,7 @@ Result<std::size_t> make(std::uint64_t seed, const ChallengeDraw& draw, const Ne
   if (!points) return points.error();
 
   const fs::path data = folder / kMeasurementsFile;
-  if (const Status ok = write_points(*points, data); !ok) return ok.error();
+  if (const Status ok = write_file_of(*points, data); !ok) return ok.error();
   const auto sha256 = daemon::file_sha256(data);
   if (!sha256) return sha256.error();
   const std::string sealed = sealed_text({.says = kSays,

@@ -6,6 +6,14 @@ target_compile_options(fogbench_warnings INTERFACE
   # A designated initialiser leaves the other members at their defaults on purpose.
   -Wno-missing-field-initializers)
 
+# fogbench_sources_at_once(<target>) gives the compiler that many of the target's sources as one.
+function(fogbench_sources_at_once target)
+  if(FOGBENCH_SOURCES_AT_ONCE GREATER 1)
+    set_target_properties(${target} PROPERTIES
+      UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${FOGBENCH_SOURCES_AT_ONCE})
+  endif()
+endfunction()
+
 # fogbench_library(<folder> SOURCES a.cpp ... PUBLIC targets... PRIVATE targets...)
 # declares the static library of one room, fogbench::<folder>.
 function(fogbench_library folder)
@@ -15,8 +23,7 @@ function(fogbench_library folder)
   target_include_directories(fogbench_${folder} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(fogbench_${folder}
     PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:fogbench_warnings>)
-  set_target_properties(fogbench_${folder} PROPERTIES
-    UNITY_BUILD ${FOGBENCH_ALL_AT_ONCE} UNITY_BUILD_BATCH_SIZE 8)
+  fogbench_sources_at_once(fogbench_${folder})
 endfunction()
 
 # fogbench_test(<name> SOURCES a_test.cpp ... LINKS targets... LABEL unit|system|slow COST seconds)
@@ -41,7 +48,8 @@ function(fogbench_test name)
     ${ARG_LINKS} fogbench_test_support GTest::gtest_main GTest::gmock fogbench_warnings)
   # Most of what a test does is in the rooms, and most of its build is the compiler's.
   target_compile_options(${name} PRIVATE -O0)
-  if(FOGBENCH_ALL_AT_ONCE)
+  fogbench_sources_at_once(${name})
+  if(FOGBENCH_SOURCES_AT_ONCE GREATER 1)
     target_precompile_headers(${name} REUSE_FROM fogbench_test_headers)
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES

@@ -63,7 +63,7 @@ std::vector<IndexRun> runs_of(std::span<const std::int64_t> index) {
   return runs;
 }
 
-Error damaged(const std::string& what) {
+Error damaged_chunk(const std::string& what) {
   return Error{ErrorCode::kStore, "damaged chunk: " + what};
 }
 
@@ -71,11 +71,11 @@ Error damaged(const std::string& what) {
 Status decompress(std::span<const std::byte> blob, std::span<std::byte> out, const char* column) {
   const unsigned long long size = ZSTD_getFrameContentSize(blob.data(), blob.size());
   if (size != out.size()) {
-    return damaged(fmt::format("column {} does not hold {} bytes", column, out.size()));
+    return damaged_chunk(fmt::format("column {} does not hold {} bytes", column, out.size()));
   }
   const std::size_t got = ZSTD_decompress(out.data(), out.size(), blob.data(), blob.size());
   if (ZSTD_isError(got) != 0 || got != out.size()) {
-    return damaged(fmt::format("column {} cannot be decompressed", column));
+    return damaged_chunk(fmt::format("column {} cannot be decompressed", column));
   }
   return {};
 }
@@ -101,7 +101,7 @@ Result<std::vector<IndexRun>> decode_runs(const Chunk& chunk) {
   const unsigned long long size =
       ZSTD_getFrameContentSize(chunk.index_runs.data(), chunk.index_runs.size());
   if (size % sizeof(IndexRun) != 0 || size > kMaximumChunkFrames * sizeof(IndexRun)) {
-    return damaged("column index_runs has no valid length");
+    return damaged_chunk("column index_runs has no valid length");
   }
   runs.resize(size / sizeof(IndexRun));
   if (const Status ok =
@@ -113,12 +113,12 @@ Result<std::vector<IndexRun>> decode_runs(const Chunk& chunk) {
   for (const IndexRun& run : runs) {
     if (run.offset < next || run.count <= 0 || run.count > chunk.frames - total ||
         run.offset > (std::int64_t{1} << 60)) {
-      return damaged("column index_runs makes no sense");
+      return damaged_chunk("column index_runs makes no sense");
     }
     next = run.offset + run.count;
     total += run.count;
   }
-  if (total != chunk.frames) return damaged("column index_runs does not count all frames");
+  if (total != chunk.frames) return damaged_chunk("column index_runs does not count all frames");
   return runs;
 }
 
@@ -183,7 +183,7 @@ Result<const Chunk*> ChunkEncoder::encode(std::span<const std::int64_t> index,
 
 Status decode_chunk(const Chunk& chunk, drivers::GyroBlock& out) {
   if (chunk.frames <= 0 || chunk.frames > static_cast<std::int64_t>(kMaximumChunkFrames)) {
-    return damaged(fmt::format("it claims {} frames", chunk.frames));
+    return damaged_chunk(fmt::format("it claims {} frames", chunk.frames));
   }
   const auto frames = static_cast<std::size_t>(chunk.frames);
   const auto runs = decode_runs(chunk);
@@ -196,7 +196,7 @@ Status decode_chunk(const Chunk& chunk, drivers::GyroBlock& out) {
     if (!ok) return ok;
   }
   if (hash_chunk(chunk.first_index, chunk.frames, *runs, rate, temperature) != chunk.sha256) {
-    return damaged("its content does not have the recorded SHA-256");
+    return damaged_chunk("its content does not have the recorded SHA-256");
   }
 
   const IndexRun whole[] = {{0, chunk.frames}};

@@ -16,7 +16,7 @@ namespace fogbench::daemon {
 namespace {
 
 /// A label's value may hold anything but these three as they are.
-std::string escaped(std::string_view value) {
+std::string quotable(std::string_view value) {
   std::string text;
   for (const char c : value) {
     if (c == '\\' || c == '"') text += '\\';
@@ -36,7 +36,7 @@ class Exposition {
   /// Of the family that was named last.
   void sample(double value) { text_ += fmt::format("{} {}\n", name_, value); }
   void sample(std::string_view label, std::string_view label_value, double value) {
-    text_ += fmt::format("{}{{{}=\"{}\"}} {}\n", name_, label, escaped(label_value), value);
+    text_ += fmt::format("{}{{{}=\"{}\"}} {}\n", name_, label, quotable(label_value), value);
   }
   void single(std::string_view name, std::string_view help, double value) {
     gauge(name, help);

@@ -16,7 +16,7 @@ using model::SvgPlot;
 namespace {
 
 /// Test after test; the page's style has the colours of .first and .second.
-constexpr std::array<const char*, 2> kKinds{"first", "second"};
+constexpr std::array<const char*, 2> kSeries{"first", "second"};
 constexpr std::array<SvgPlot::Mark, 2> kMarks{SvgPlot::Mark::kDot, SvgPlot::Mark::kSquare};
 
 using XY = std::vector<std::pair<double, double>>;
@@ -49,7 +49,7 @@ XY line_through(const XY& measured, const std::function<double(double)>& shape) 
 /// Marks and line of one test; its place among the tests that are drawn decides how they look.
 void add_test(SvgPlot& plot, XY measured, const std::function<double(double)>& shape,
               std::size_t place) {
-  const std::string kind = kKinds[place % kKinds.size()];
+  const std::string kind = kSeries[place % kSeries.size()];
   XY line = line_through(measured, shape);
   plot.series.push_back({.kind = kind,
                          .mark = kMarks[place % kMarks.size()],

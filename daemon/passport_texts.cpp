@@ -6,7 +6,7 @@
 namespace fogbench::daemon {
 namespace {
 
-struct Words {
+struct Phrase {
   std::string_view english, russian;
 
   constexpr bool complete() const { return !english.empty() && !russian.empty(); }
@@ -17,12 +17,12 @@ struct Words {
 
 struct Entry {
   Text which;
-  Words words;
+  Phrase phrase;
 };
 
 struct Named {
   std::string_view id;
-  Words words;
+  Phrase phrase;
 };
 
 constexpr Entry kTexts[] = {
@@ -225,16 +225,16 @@ constexpr Named kRoles[] = {
 
 constexpr bool all_translated() {
   for (std::size_t i = 0; i < std::size(kTexts); ++i) {
-    if (kTexts[i].which != static_cast<Text>(i) || !kTexts[i].words.complete()) return false;
+    if (kTexts[i].which != static_cast<Text>(i) || !kTexts[i].phrase.complete()) return false;
   }
   for (const Named& named : kQuantities) {
-    if (!named.words.complete()) return false;
+    if (!named.phrase.complete()) return false;
   }
   for (const Named& named : kUnits) {
-    if (!named.words.complete()) return false;
+    if (!named.phrase.complete()) return false;
   }
   for (const Named& named : kRoles) {
-    if (!named.words.complete()) return false;
+    if (!named.phrase.complete()) return false;
   }
   return true;
 }
@@ -251,13 +251,13 @@ const Named* find(const Named (&table)[N], std::string_view id) {
 template <std::size_t N>
 std::string_view name_in(const Named (&table)[N], std::string_view id, Language language) {
   const Named* named = find(table, id);
-  return named == nullptr ? id : named->words.in(language);
+  return named == nullptr ? id : named->phrase.in(language);
 }
 
 }  // namespace
 
 std::string_view text(Text which, Language language) {
-  return kTexts[static_cast<std::size_t>(which)].words.in(language);
+  return kTexts[static_cast<std::size_t>(which)].phrase.in(language);
 }
 
 std::string quantity_name(const std::string& quantity, Language language) {

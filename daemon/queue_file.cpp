@@ -52,7 +52,7 @@ Result<PlannedProcedure> plan(const Order& order, const Setup& setup,
   return plan_resumption(**log, order.takes_up, setup);
 }
 
-std::string name_of(const Order& order) {
+std::string title_of(const Order& order) {
   return order.takes_up == 0 ? order.procedure : fmt::format("taking up run {}", order.takes_up);
 }
 
@@ -74,7 +74,7 @@ Status QueueFile::load(RunDesk& desk, const Setup& setup, const std::filesystem:
     }
     auto planned = plan(kept->order, setup, store);
     if (!planned) {
-      spdlog::warn("{}, asked for by {}, is no longer in the queue: {}", name_of(kept->order),
+      spdlog::warn("{}, asked for by {}, is no longer in the queue: {}", title_of(kept->order),
                    kept->by.name, planned.error().message);
       continue;
     }

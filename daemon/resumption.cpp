@@ -20,7 +20,7 @@ using procedures::Plan;
 
 namespace {
 
-Error damaged(std::int64_t run) {
+Error damaged_header(std::int64_t run) {
   return config::bad_input(fmt::format("run {}: its record of the procedure is damaged", run));
 }
 
@@ -31,10 +31,10 @@ Result<PlannedProcedure> recorded_procedure(const StoredRun& run,
       nlohmann::ordered_json::parse(run.header.procedure_json, nullptr, /*exceptions=*/false);
   if (!record.is_object() || !record.contains("files") || !record.contains("parameters") ||
       !record["files"].is_object() || record["files"].empty()) {
-    return damaged(run.run);
+    return damaged_header(run.run);
   }
   const auto parameters = parameters_of(record["parameters"]);
-  if (!parameters) return damaged(run.run);
+  if (!parameters) return damaged_header(run.run);
   const auto folder = config::ScratchFolder::make();
   if (!folder) return folder.error();
   for (const auto& [name, text] : record["files"].items()) {
@@ -122,7 +122,7 @@ Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, co
   const auto steps = log.steps(run);
   if (!steps) return steps.error();
   const auto at = position(last, *steps, planned->plan);
-  if (!at) return damaged(run);
+  if (!at) return damaged_header(run);
   auto resumed = procedures::resume_plan(planned->plan, *at, setup.bench);
   if (!resumed) return resumed.error();
 

@@ -48,7 +48,8 @@ Enum parse(const std::string& name, const Enum (&values)[N]) {
 
 constexpr RunOutcome kOutcomes[] = {RunOutcome::kCompleted, RunOutcome::kAborted,
                                     RunOutcome::kFailed, RunOutcome::kInterrupted};
-constexpr PointKind kKinds[] = {PointKind::kBaseline, PointKind::kAverage, PointKind::kTransient};
+constexpr PointKind kPointKinds[] = {PointKind::kBaseline, PointKind::kAverage,
+                                     PointKind::kTransient};
 
 StoredRun read_run(const Statement& row) {
   int column = 0;
@@ -175,7 +176,7 @@ Result<std::vector<StoredPoint>> RunLogReader::points(std::int64_t run) {
   return collect<StoredPoint>(*select, [&] {
     StoredPoint stored;
     Point& point = stored.point;
-    point.kind = parse(select->text(0), kKinds);
+    point.kind = parse(select->text(0), kPointKinds);
     point.test = static_cast<int>(select->integer(1));
     point.block = static_cast<int>(select->integer(2));
     point.segment = select->text(3);

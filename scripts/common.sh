@@ -11,8 +11,7 @@ fail() {
   exit 1
 }
 
-# As many jobs as there are cores, but no more than fit into memory: the largest files (Ceres)
-# take about 1.2 GB of it while they compile, twice that with sanitizers.
+# As many jobs as there are cores, but no more than fit into memory.
 job_count() {
   local kb_each=$1 cores memory_kb
   cores=$(nproc)

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "drivers/number_codec.hpp"
+#include "simulator/modbus_exception.hpp"
 
 namespace fogbench::simulator {
 
@@ -24,10 +25,6 @@ using namespace std::chrono_literals;
 /// A short frame each way at 9600 baud, and the instrument's turn-around.
 constexpr drivers::Clock::Duration kTransaction = 20ms;
 constexpr drivers::Clock::Duration kTimeout = 500ms;
-
-constexpr int kIllegalAddress = 2;
-constexpr int kIllegalValue = 3;
-constexpr int kDeviceFailure = 4;
 
 std::optional<HeatingMode> mode_named(const std::string& name) {
   if (name == "off") return HeatingMode::kOff;

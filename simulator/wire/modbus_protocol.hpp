@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/result.hpp"
+#include "simulator/modbus_exception.hpp"
 #include "simulator/wire/bytes.hpp"
 
 namespace fogbench::simulator {
@@ -17,13 +18,6 @@ enum class ModbusFunction : std::uint8_t {
   kReadRegisters = 3,
   kWriteRegister = 6,
   kWriteRegisters = 16,
-};
-
-enum ModbusException : std::uint8_t {
-  kIllegalFunction = 1,
-  kIllegalAddress = 2,
-  kIllegalValue = 3,
-  kDeviceFailure = 4,
 };
 
 /// A request without its framing.

@@ -12,12 +12,12 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Mistake {
+struct BenchMistake {
   const char* patch;
   const char* message;
 };
 
-class BenchMistakes : public testing::TestWithParam<Mistake> {};
+class BenchMistakes : public testing::TestWithParam<BenchMistake> {};
 
 TEST_P(BenchMistakes, AreNamed) {
   ChangedFile file;
@@ -28,92 +28,104 @@ TEST_P(BenchMistakes, AreNamed) {
 INSTANTIATE_TEST_SUITE_P(
     All, BenchMistakes,
     testing::Values(
-        Mistake{R"([{"op": "replace", "path": "/gyro/device", "value": "../devices/none.json"}])",
-                "changed.json: /gyro/device: "},
-        Mistake{
+        BenchMistake{
+            R"([{"op": "replace", "path": "/gyro/device", "value": "../devices/none.json"}])",
+            "changed.json: /gyro/device: "},
+        BenchMistake{
             R"([{"op": "replace", "path": "/gyro/device", "value": "../devices/coil-kepco.json"}])",
             "/gyro/device: names a device of the wrong kind for this instrument"},
-        Mistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "ttyUSB0"}])",
-                "/gyro/connection: found \"ttyUSB0\", expected \"simulated\", or an address"},
-        Mistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "tty:"}])",
-                "/gyro/connection: found \"tty:\", expected tty:TTY"},
-        Mistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "tcp:127.0.0.1:502"}])",
-                "/gyro/connection: found \"tcp:127.0.0.1:502\", expected a gyro on tty:"},
-        Mistake{
+        BenchMistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "ttyUSB0"}])",
+                     "/gyro/connection: found \"ttyUSB0\", expected \"simulated\", or an address"},
+        BenchMistake{R"([{"op": "replace", "path": "/gyro/connection", "value": "tty:"}])",
+                     "/gyro/connection: found \"tty:\", expected tty:TTY"},
+        BenchMistake{
+            R"([{"op": "replace", "path": "/gyro/connection", "value": "tcp:127.0.0.1:502"}])",
+            "/gyro/connection: found \"tcp:127.0.0.1:502\", expected a gyro on tty:"},
+        BenchMistake{
             R"([{"op": "replace", "path": "/thermostat/connection", "value": "tty:/dev/tty1"}])",
             "/thermostat/connection: found \"tty:/dev/tty1\", expected a thermostat on tcp: or"},
-        Mistake{R"([{"op": "replace", "path": "/magnetometer/connection",
+        BenchMistake{
+            R"([{"op": "replace", "path": "/magnetometer/connection",
                      "value": "usb:0x1209:0x0001:M"}])",
-                "/magnetometer/connection: found \"usb:0x1209:0x0001:M\", expected a magnetometer"},
-        Mistake{R"([{"op": "replace", "path": "/coil_vertical/connection",
+            "/magnetometer/connection: found \"usb:0x1209:0x0001:M\", expected a magnetometer"},
+        BenchMistake{R"([{"op": "replace", "path": "/coil_vertical/connection",
                      "value": "hid:0x1209:0x0001:M"}])",
-                "expected a coil supply on usb: or tty:"},
-        Mistake{R"([{"op": "replace", "path": "/turntable/connection",
+                     "expected a coil supply on usb: or tty:"},
+        BenchMistake{R"([{"op": "replace", "path": "/turntable/connection",
                      "value": "hid:0x1209:0x0001:M"}])",
-                "expected a turntable on usb: or tty:"},
-        Mistake{
+                     "expected a turntable on usb: or tty:"},
+        BenchMistake{
             R"([{"op": "replace", "path": "/thermostat/calibrated_on", "value": "2026-02-30"}])",
             "/thermostat/calibrated_on: found \"2026-02-30\", expected a date, YYYY-MM-DD"},
-        Mistake{R"([{"op": "replace", "path": "/thermostat/calibration_due", "value": "soon"}])",
-                "/thermostat/calibration_due: found \"soon\""},
-        Mistake{R"([{"op": "replace", "path": "/coil_vertical/current_limit_a", "value": 6.5}])",
-                "/coil_vertical/current_limit_a: found 6.5, expected at most 6 A"},
-        Mistake{R"([{"op": "replace", "path": "/coil_vertical/device",
+        BenchMistake{
+            R"([{"op": "replace", "path": "/thermostat/calibration_due", "value": "soon"}])",
+            "/thermostat/calibration_due: found \"soon\""},
+        BenchMistake{
+            R"([{"op": "replace", "path": "/coil_vertical/current_limit_a", "value": 6.5}])",
+            "/coil_vertical/current_limit_a: found 6.5, expected at most 6 A"},
+        BenchMistake{R"([{"op": "replace", "path": "/coil_vertical/device",
                      "value": "../devices/turntable-scpi.json"}])",
-                "/coil_vertical/device: sets deg; expected a supply that sets A"},
-        Mistake{R"([{"op": "replace", "path": "/turntable/device",
+                     "/coil_vertical/device: sets deg; expected a supply that sets A"},
+        BenchMistake{R"([{"op": "replace", "path": "/turntable/device",
                      "value": "../devices/coil-kepco.json"}])",
-                "/turntable/device: sets A; expected a turntable that sets deg"},
-        Mistake{R"([{"op": "replace", "path": "/turntable/motorised", "value": false}])",
-                "/turntable/device: found \"../devices/turntable-scpi.json\", expected none"},
-        Mistake{R"([{"op": "remove", "path": "/turntable/device"}])",
-                "/turntable/device: found nothing, expected a device file"},
-        Mistake{R"([{"op": "replace", "path": "/gyro/frame_rate_hz", "value": 2600}])",
-                "/gyro/frame_rate_hz: found 2600, expected at most 2560.0"},
-        Mistake{R"([{"op": "replace", "path": "/gyro/max_gap_s", "value": 0.001}])",
-                "/gyro/max_gap_s: found 0.001, expected at least one frame, 0.01 s"},
-        Mistake{R"([{"op": "replace", "path": "/limits/temperature_minimum_c", "value": 60}])",
-                "/limits/temperature_minimum_c: found 60, expected less than"},
-        Mistake{R"([{"op": "replace", "path": "/limits/temperature_maximum_c", "value": 71}])",
-                "expected at most the thermostat's target_maximum_c 70"},
-        Mistake{R"([{"op": "replace", "path": "/interlocks", "value": []}])",
-                "/interlocks: found an empty list, expected a list that is not empty"},
-        Mistake{R"([{"op": "replace", "path": "/interlocks/0/all_of", "value": []}])",
-                "/interlocks/0/all_of: found an empty list, expected a list that is not empty"},
-        Mistake{R"([{"op": "remove", "path": "/interlocks/1/all_of"}])",
-                "/interlocks/1: expected either \"all_of\" or \"any_of\", with its conditions"},
-        Mistake{
+                     "/turntable/device: sets A; expected a turntable that sets deg"},
+        BenchMistake{R"([{"op": "replace", "path": "/turntable/motorised", "value": false}])",
+                     "/turntable/device: found \"../devices/turntable-scpi.json\", expected none"},
+        BenchMistake{R"([{"op": "remove", "path": "/turntable/device"}])",
+                     "/turntable/device: found nothing, expected a device file"},
+        BenchMistake{R"([{"op": "replace", "path": "/gyro/frame_rate_hz", "value": 2600}])",
+                     "/gyro/frame_rate_hz: found 2600, expected at most 2560.0"},
+        BenchMistake{R"([{"op": "replace", "path": "/gyro/max_gap_s", "value": 0.001}])",
+                     "/gyro/max_gap_s: found 0.001, expected at least one frame, 0.01 s"},
+        BenchMistake{R"([{"op": "replace", "path": "/limits/temperature_minimum_c", "value": 60}])",
+                     "/limits/temperature_minimum_c: found 60, expected less than"},
+        BenchMistake{R"([{"op": "replace", "path": "/limits/temperature_maximum_c", "value": 71}])",
+                     "expected at most the thermostat's target_maximum_c 70"},
+        BenchMistake{R"([{"op": "replace", "path": "/interlocks", "value": []}])",
+                     "/interlocks: found an empty list, expected a list that is not empty"},
+        BenchMistake{
+            R"([{"op": "replace", "path": "/interlocks/0/all_of", "value": []}])",
+            "/interlocks/0/all_of: found an empty list, expected a list that is not empty"},
+        BenchMistake{
+            R"([{"op": "remove", "path": "/interlocks/1/all_of"}])",
+            "/interlocks/1: expected either \"all_of\" or \"any_of\", with its conditions"},
+        BenchMistake{
             R"([{"op": "replace", "path": "/interlocks/3/all_of/0/kind", "value": "field"}])",
             "/interlocks/3/all_of/0/kind: found \"field\", expected one of \"over_temperature\""},
-        Mistake{R"([{"op": "replace", "path": "/interlocks/3/all_of/0/clear_ut", "value": 16}])",
-                "/interlocks/3/all_of/0/clear_ut: found 16, expected at most trip_ut 15"},
-        Mistake{R"([{"op": "move", "from": "/interlocks/3/all_of/0/trip_ut",
+        BenchMistake{
+            R"([{"op": "replace", "path": "/interlocks/3/all_of/0/clear_ut", "value": 16}])",
+            "/interlocks/3/all_of/0/clear_ut: found 16, expected at most trip_ut 15"},
+        BenchMistake{R"([{"op": "move", "from": "/interlocks/3/all_of/0/trip_ut",
                      "path": "/interlocks/3/all_of/0/trip_t"}])",
-                "/interlocks/3/all_of/0/trip_t: unknown key; did you mean \"trip_ut\"?"},
-        Mistake{R"([{"op": "add", "path": "/interlocks/3/all_of/0/rise_c", "value": 1}])",
-                "/interlocks/3/all_of/0/rise_c: unknown key"},
-        Mistake{R"([{"op": "replace", "path": "/interlocks/3/action", "value": "stop"}])",
-                "/interlocks/3/action: found \"stop\", expected one of \"warn\", \"pause\""},
-        Mistake{R"([{"op": "replace", "path": "/interlocks/3/consecutive", "value": 0}])",
-                "/interlocks/3/consecutive: found 0, expected an integer"},
-        Mistake{R"([{"op": "replace", "path": "/interlocks/3/name", "value": "sensors"}])",
-                "/interlocks/3/name: found \"sensors\", expected another name than that of"},
-        Mistake{R"([{"op": "replace", "path": "/interlocks/0/action", "value": "warn"}])",
-                "/interlocks: no over_temperature by itself aborts above temperature_maximum_c 60"},
-        Mistake{R"([{"op": "replace", "path": "/interlocks/0/all_of/0/trip_c", "value": 62.5}])",
-                "/interlocks: no over_temperature by itself"},
-        Mistake{R"([{"op": "replace", "path": "/interlocks/0/consecutive", "value": 11}])",
-                "expected one with trip_c 62 and consecutive 10 at most"},
-        Mistake{R"([{"op": "add", "path": "/simulation/thermal/dead_time_s", "value": 1e300}])",
-                "/simulation/thermal/dead_time_s: found 1e+300, expected a number from 0 to 3600"},
-        Mistake{R"([{"op": "add", "path": "/simulation/magnetic/ambient_steps_per_h",
+                     "/interlocks/3/all_of/0/trip_t: unknown key; did you mean \"trip_ut\"?"},
+        BenchMistake{R"([{"op": "add", "path": "/interlocks/3/all_of/0/rise_c", "value": 1}])",
+                     "/interlocks/3/all_of/0/rise_c: unknown key"},
+        BenchMistake{R"([{"op": "replace", "path": "/interlocks/3/action", "value": "stop"}])",
+                     "/interlocks/3/action: found \"stop\", expected one of \"warn\", \"pause\""},
+        BenchMistake{R"([{"op": "replace", "path": "/interlocks/3/consecutive", "value": 0}])",
+                     "/interlocks/3/consecutive: found 0, expected an integer"},
+        BenchMistake{R"([{"op": "replace", "path": "/interlocks/3/name", "value": "sensors"}])",
+                     "/interlocks/3/name: found \"sensors\", expected another name than that of"},
+        BenchMistake{
+            R"([{"op": "replace", "path": "/interlocks/0/action", "value": "warn"}])",
+            "/interlocks: no over_temperature by itself aborts above temperature_maximum_c 60"},
+        BenchMistake{
+            R"([{"op": "replace", "path": "/interlocks/0/all_of/0/trip_c", "value": 62.5}])",
+            "/interlocks: no over_temperature by itself"},
+        BenchMistake{R"([{"op": "replace", "path": "/interlocks/0/consecutive", "value": 11}])",
+                     "expected one with trip_c 62 and consecutive 10 at most"},
+        BenchMistake{
+            R"([{"op": "add", "path": "/simulation/thermal/dead_time_s", "value": 1e300}])",
+            "/simulation/thermal/dead_time_s: found 1e+300, expected a number from 0 to 3600"},
+        BenchMistake{
+            R"([{"op": "add", "path": "/simulation/magnetic/ambient_steps_per_h",
                      "value": 1e300}])",
-                "/simulation/magnetic/ambient_steps_per_h: found 1e+300, expected a number from 0"},
-        Mistake{R"([{"op": "add", "path": "/simulation/step_s", "value": 2}])",
-                "/simulation/step_s: found 2, expected a number from 0.001 to 1"},
-        Mistake{R"([{"op": "replace", "path": "/simulation/magnetic/sensor_matrix",
+            "/simulation/magnetic/ambient_steps_per_h: found 1e+300, expected a number from 0"},
+        BenchMistake{R"([{"op": "add", "path": "/simulation/step_s", "value": 2}])",
+                     "/simulation/step_s: found 2, expected a number from 0.001 to 1"},
+        BenchMistake{R"([{"op": "replace", "path": "/simulation/magnetic/sensor_matrix",
                      "value": [[1, 0, 0], [1, 0, 0], [0, 0, 1]]}])",
-                "/simulation/magnetic/sensor_matrix: cannot be inverted"}));
+                     "/simulation/magnetic/sensor_matrix: cannot be inverted"}));
 
 TEST(LoadBench, NameOfADeviceThatNoFileCanHaveIsNamed) {
   ChangedFile file;

@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string message(const std::string& terms) {
+std::string terms_mistake(const std::string& terms) {
   ChangedFile file;
   return message_of(load_model(file.write(R"({"name": "m", "terms": )" + terms + "}")));
 }
@@ -111,21 +111,23 @@ TEST(ModelFile, DefaultsAreTheDocumentedOnes) {
 }
 
 TEST(ModelFile, MistakesAreNamed) {
-  EXPECT_THAT(message(R"([{"effect": "bias"}, {"effect": "bias"}])"),
+  EXPECT_THAT(terms_mistake(R"([{"effect": "bias"}, {"effect": "bias"}])"),
               HasSubstr("/terms/1/effect: found \"bias\", expected an effect once; it stands in "
                         "term 0 already"));
-  EXPECT_THAT(message("[]"), HasSubstr("/terms: found an empty list"));
-  EXPECT_THAT(message(R"([{"effect": "Bias"}])"), HasSubstr("/terms/0/effect: found \"Bias\""));
-  EXPECT_THAT(message(R"([{"effect": "bias", "coeficient": 1}])"),
+  EXPECT_THAT(terms_mistake("[]"), HasSubstr("/terms: found an empty list"));
+  EXPECT_THAT(terms_mistake(R"([{"effect": "Bias"}])"),
+              HasSubstr("/terms/0/effect: found \"Bias\""));
+  EXPECT_THAT(terms_mistake(R"([{"effect": "bias", "coeficient": 1}])"),
               HasSubstr("did you mean \"coefficient\"?"));
-  EXPECT_THAT(message(R"([{"effect": "bias", "coefficient": null}])"),
+  EXPECT_THAT(terms_mistake(R"([{"effect": "bias", "coefficient": null}])"),
               HasSubstr("/terms/0/coefficient: found null, expected a number"));
-  EXPECT_THAT(message(R"([{"effect": "bias", "coefficient": 1, "coefficients": {"cos": 1}}])"),
-              HasSubstr("/terms/0/coefficients: stands beside \"coefficient\""));
-  EXPECT_THAT(message(R"([{"effect": "bias", "fixed": true}])"),
+  EXPECT_THAT(
+      terms_mistake(R"([{"effect": "bias", "coefficient": 1, "coefficients": {"cos": 1}}])"),
+      HasSubstr("/terms/0/coefficients: stands beside \"coefficient\""));
+  EXPECT_THAT(terms_mistake(R"([{"effect": "bias", "fixed": true}])"),
               HasSubstr("/terms/0/fixed: found true, expected a coefficient beside it"));
   EXPECT_THAT(
-      message(R"([{"effect": "bias", "standard_errors": {"bias": -1}}])"),
+      terms_mistake(R"([{"effect": "bias", "standard_errors": {"bias": -1}}])"),
       HasSubstr("/terms/0/standard_errors/bias: found -1, expected a number of at least 0"));
 }
 

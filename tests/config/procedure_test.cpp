@@ -11,7 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string message(const std::string& step) {
+std::string step_mistake(const std::string& step) {
   ChangedFile file;
   return message_of(load_procedure(file.write(R"({"name": "p", "steps": [)" + step + "]}")));
 }
@@ -53,31 +53,33 @@ TEST(LoadProcedure, ReadsEveryStep) {
 }
 
 TEST(LoadProcedure, MistakesAreNamed) {
-  EXPECT_THAT(message(R"({"step": "measure"})"),
+  EXPECT_THAT(step_mistake(R"({"step": "measure"})"),
               HasSubstr("/steps/0/step: found \"measure\", expected one of set_temperature, "
                         "settle_temperature, wait,"));
-  EXPECT_THAT(message(R"({"duration_s": 1})"), HasSubstr("/steps/0/step: found nothing"));
-  EXPECT_THAT(message("7"), HasSubstr("/steps/0: found 7, expected an object"));
-  EXPECT_THAT(message(""), HasSubstr("/steps: found an empty list, expected a list that is not"));
-  EXPECT_THAT(message(R"({"step": "average", "duration_s": "60"})"),
+  EXPECT_THAT(step_mistake(R"({"duration_s": 1})"), HasSubstr("/steps/0/step: found nothing"));
+  EXPECT_THAT(step_mistake("7"), HasSubstr("/steps/0: found 7, expected an object"));
+  EXPECT_THAT(step_mistake(""),
+              HasSubstr("/steps: found an empty list, expected a list that is not"));
+  EXPECT_THAT(step_mistake(R"({"step": "average", "duration_s": "60"})"),
               HasSubstr("/steps/0/duration_s: found \"60\", expected a number or the \"$name\" of "
                         "a parameter"));
-  EXPECT_THAT(message(R"({"step": "average", "duration_s": 0})"),
+  EXPECT_THAT(step_mistake(R"({"step": "average", "duration_s": 0})"),
               HasSubstr("/steps/0/duration_s: found 0, expected a number above 0"));
-  EXPECT_THAT(message(R"({"step": "average", "duration_s": 60, "duration": 60})"),
+  EXPECT_THAT(step_mistake(R"({"step": "average", "duration_s": 60, "duration": 60})"),
               HasSubstr("did you mean \"duration_s\"?"));
-  EXPECT_THAT(message(R"({"step": "set_temperature", "mode": "boost"})"),
+  EXPECT_THAT(step_mistake(R"({"step": "set_temperature", "mode": "boost"})"),
               HasSubstr("/steps/0/target_c: found nothing, expected a set point"));
-  EXPECT_THAT(message(R"({"step": "set_temperature", "mode": "fast", "target_c": 31})"),
+  EXPECT_THAT(step_mistake(R"({"step": "set_temperature", "mode": "fast", "target_c": 31})"),
               HasSubstr("expected one of \"off\", \"boost\", \"normal\""));
-  EXPECT_THAT(message(R"({"step": "wait"})"), HasSubstr("/steps/0: has neither \"duration_s\""));
-  EXPECT_THAT(message(R"({"step": "sweep", "axis": "x", "levels_ut": 50, "segment": "s"})"),
+  EXPECT_THAT(step_mistake(R"({"step": "wait"})"),
+              HasSubstr("/steps/0: has neither \"duration_s\""));
+  EXPECT_THAT(step_mistake(R"({"step": "sweep", "axis": "x", "levels_ut": 50, "segment": "s"})"),
               HasSubstr("/steps/0/levels_ut: found 50, expected a list of numbers or the"));
-  EXPECT_THAT(message(R"({"step": "sweep", "axis": "x", "levels_ut": [], "segment": "s"})"),
+  EXPECT_THAT(step_mistake(R"({"step": "sweep", "axis": "x", "levels_ut": [], "segment": "s"})"),
               HasSubstr("/steps/0/levels_ut: found an empty list"));
-  EXPECT_THAT(message(R"({"step": "for_each", "variable": "T", "in": [1], "steps": [1]})"),
+  EXPECT_THAT(step_mistake(R"({"step": "for_each", "variable": "T", "in": [1], "steps": [1]})"),
               HasSubstr("/steps/0/steps/0: found 1, expected an object"));
-  EXPECT_THAT(message(R"({"step": "for_each", "variable": "T", "in": [1], "steps":
+  EXPECT_THAT(step_mistake(R"({"step": "for_each", "variable": "T", "in": [1], "steps":
                           [{"step": "compensate_field"}]})"),
               HasSubstr("/steps/0/variable: found \"T\", expected a name of small letters"));
 }

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string message(const std::string& text) {
+std::string scenario_mistake(const std::string& text) {
   ChangedFile file;
   return message_of(load_scenario(file.write(text)));
 }
@@ -52,30 +52,33 @@ TEST(LoadScenario, ReadsEveryPart) {
 }
 
 TEST(LoadScenario, MistakesAreNamed) {
-  EXPECT_THAT(message(R"({"noise": "best"})"),
+  EXPECT_THAT(scenario_mistake(R"({"noise": "best"})"),
               HasSubstr("/noise: noise grade \"best\" is not known"));
-  EXPECT_THAT(message(R"({"noise": 1})"),
+  EXPECT_THAT(scenario_mistake(R"({"noise": 1})"),
               HasSubstr("/noise: found 1, expected a grade's name or an object"));
-  EXPECT_THAT(message(R"({"noise": {"N": 1}})"), HasSubstr("/noise/N: unknown key"));
-  EXPECT_THAT(message(R"({"gyro": {"terms": {"Bias": 1}}})"),
+  EXPECT_THAT(scenario_mistake(R"({"noise": {"N": 1}})"), HasSubstr("/noise/N: unknown key"));
+  EXPECT_THAT(scenario_mistake(R"({"gyro": {"terms": {"Bias": 1}}})"),
               HasSubstr("/gyro/terms/Bias: this key names something"));
-  EXPECT_THAT(message(R"({"gyro": {"terms": {"bias": "1"}}})"),
+  EXPECT_THAT(scenario_mistake(R"({"gyro": {"terms": {"bias": "1"}}})"),
               HasSubstr("/gyro/terms/bias: found \"1\", expected a number"));
-  EXPECT_THAT(message(R"({"gyro": 1})"), HasSubstr("/gyro: found 1, expected an object"));
-  EXPECT_THAT(message(R"({"gyro": {"term": {}}})"), HasSubstr("did you mean \"terms\"?"));
-  EXPECT_THAT(message(R"({"hidden": [{"effect": "warm up", "amplitude": 1}]})"),
+  EXPECT_THAT(scenario_mistake(R"({"gyro": 1})"), HasSubstr("/gyro: found 1, expected an object"));
+  EXPECT_THAT(scenario_mistake(R"({"gyro": {"term": {}}})"), HasSubstr("did you mean \"terms\"?"));
+  EXPECT_THAT(scenario_mistake(R"({"hidden": [{"effect": "warm up", "amplitude": 1}]})"),
               HasSubstr("/hidden/0/effect: found \"warm up\""));
-  EXPECT_THAT(message(R"({"hidden": [{"effect": "warm_up"}]})"),
+  EXPECT_THAT(scenario_mistake(R"({"hidden": [{"effect": "warm_up"}]})"),
               HasSubstr("/hidden/0: has no key \"amplitude\""));
-  EXPECT_THAT(message(R"({"hidden": [{"effect": "warm_up", "amplitude": 1, "tau": "9"}]})"),
-              HasSubstr("/hidden/0/tau: found \"9\", expected a number"));
   EXPECT_THAT(
-      message(R"({"faults": [{"device": "coil", "at_s": 0, "kind": "timeout", "for_s": 1}]})"),
+      scenario_mistake(R"({"hidden": [{"effect": "warm_up", "amplitude": 1, "tau": "9"}]})"),
+      HasSubstr("/hidden/0/tau: found \"9\", expected a number"));
+  EXPECT_THAT(
+      scenario_mistake(
+          R"({"faults": [{"device": "coil", "at_s": 0, "kind": "timeout", "for_s": 1}]})"),
       HasSubstr("/faults/0/device: found \"coil\", expected one of thermostat, coil_horizontal"));
-  EXPECT_THAT(message(R"({"faults": [{"device": "gyro", "at_s": 0, "kind": "dead", "for_s": 1}]})"),
+  EXPECT_THAT(scenario_mistake(
+                  R"({"faults": [{"device": "gyro", "at_s": 0, "kind": "dead", "for_s": 1}]})"),
               HasSubstr("/faults/0/kind: found \"dead\", expected one of \"timeout\""));
   const auto of_fault = [](const std::string& keys) {
-    return message(R"({"faults": [{"device": "gyro", "kind": "nan", )" + keys + "}]}");
+    return scenario_mistake(R"({"faults": [{"device": "gyro", "kind": "nan", )" + keys + "}]}");
   };
   EXPECT_THAT(of_fault(R"("operation": "read", "at_operation": 1)"),
               HasSubstr("/faults/0/operation: found \"read\", expected one of frame"));
@@ -88,9 +91,9 @@ TEST(LoadScenario, MistakesAreNamed) {
               HasSubstr("/faults/0: has for_s, which goes with at_s"));
   EXPECT_THAT(of_fault(R"("at_s": 0, "for_s": 1, "for_operations": 2)"),
               HasSubstr("/faults/0: has for_operations, which goes with at_operation"));
-  EXPECT_THAT(
-      message(R"({"magnetic_scale": [{"at_s": 9, "factor": 1}, {"at_s": 9, "factor": 2}]})"),
-      HasSubstr("/magnetic_scale/1/at_s: found 9, expected a time after 9 s"));
+  EXPECT_THAT(scenario_mistake(
+                  R"({"magnetic_scale": [{"at_s": 9, "factor": 1}, {"at_s": 9, "factor": 2}]})"),
+              HasSubstr("/magnetic_scale/1/at_s: found 9, expected a time after 9 s"));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -21,8 +20,6 @@ using procedures::Point;
 using procedures::PointKind;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 procedures::RunHeader header_of(const std::string& gyro) {
   procedures::RunHeader header;
@@ -48,7 +45,7 @@ Point window(PointKind kind, const std::string& segment, int test, double time_s
   point.rate_deg_per_h = rate;
   point.rate_std_error_deg_per_h = 0.01;
   point.temperature_c = 21.0;
-  point.field_set_ut = point.target_c = kNaN;
+  point.field_set_ut = point.target_c = std::nan("");
   return point;
 }
 
@@ -253,16 +250,16 @@ TEST_F(PassportTest, TheDocumentSaysWhereItsNumbersComeFrom) {
   record("SN-7", procedures::RunOutcome::kCompleted);
   const auto made = passport();
   ASSERT_TRUE(made);
-  const auto json = passport_json(*made);
-  EXPECT_EQ(json["verdict"], "pass");
-  const auto& origin = json["origin"][0];
+  const auto document = passport_json(*made);
+  EXPECT_EQ(document["verdict"], "pass");
+  const auto& origin = document["origin"][0];
   for (const char* key : {"gyro_serial_number", "operator", "software_version", "procedure_sha256",
                           "bench_sha256", "raw_sha256", "started_at", "ended_at"}) {
     EXPECT_TRUE(origin[key].is_string() && !origin[key].get<std::string>().empty()) << key;
   }
   EXPECT_EQ(origin["raw_data_intact"], true);
   EXPECT_EQ(origin["instruments"][1]["calibration_due"], "2026-02-01");
-  EXPECT_EQ(json["tests"].size(), 2U);
+  EXPECT_EQ(document["tests"].size(), 2U);
 }
 
 TEST(PassportTexts, EveryLimitedAndFittedQuantityHasAName) {

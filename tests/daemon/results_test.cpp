@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 namespace fogbench::daemon {
 namespace {
@@ -11,14 +10,12 @@ namespace {
 using procedures::Point;
 using procedures::PointKind;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 Point average(const std::string& segment, double rate, double error = 0.01) {
   Point point;
   point.segment = segment;
   point.rate_deg_per_h = rate;
   point.rate_std_error_deg_per_h = error;
-  point.field_set_ut = kNaN;
+  point.field_set_ut = std::nan("");
   return point;
 }
 

@@ -95,10 +95,10 @@ Agreement agreement(const json& problem, const ModelFile& model) {
   EXPECT_TRUE(result) << problem.at("name") << ": " << (result ? "" : result.error().message);
   if (!result) return {0.0, 0.0, 0.0};
   for (const auto& [name, certified] : problem.at("certified").items()) {
-    const std::string inner = "." + name;
-    const auto found = std::find_if(
-        result->estimates.begin(), result->estimates.end(),
-        [&](const Estimate& e) { return !e.held && (e.name == name || e.name.ends_with(inner)); });
+    const auto found = std::find_if(result->estimates.begin(), result->estimates.end(),
+                                    [&name = name, inner = "." + name](const Estimate& e) {
+                                      return !e.held && (e.name == name || e.name.ends_with(inner));
+                                    });
     if (found == result->estimates.end()) {
       ADD_FAILURE() << problem.at("name") << ": no estimate of " << name;
       continue;

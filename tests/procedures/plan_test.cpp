@@ -35,16 +35,16 @@ std::string refusal(std::vector<config::Step> steps, ErrorCode code,
   return plan.error().message;
 }
 
-config::Step sweep(Axis axis, std::vector<double> levels) {
+config::Step swept(Axis axis, std::vector<double> levels) {
   return step(config::Sweep{axis, std::move(levels), 180.0, 5.0, "coil"});
 }
-config::Step heat(double target_c) {
+config::Step heat_to(double target_c) {
   return step(config::SetTemperature{target_c, HeatingMode::kNormal});
 }
 
 TEST(Plan, SaysEachStepInASentenceWithUnits) {
-  const auto plan = plan_of({step(config::CompensateField{0.2}), sweep(Axis::kX, {0.0, 50.0}),
-                             heat(31.0), step(config::Baseline{60.0, "t/baseline"})});
+  const auto plan = plan_of({step(config::CompensateField{0.2}), swept(Axis::kX, {0.0, 50.0}),
+                             heat_to(31.0), step(config::Baseline{60.0, "t/baseline"})});
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_EQ(plan->steps[2].says,
             "set 50 uT along OX, settle for 5 s, average for 3 min as coil/up");
@@ -53,27 +53,27 @@ TEST(Plan, SaysEachStepInASentenceWithUnits) {
 }
 
 TEST(Plan, RefusesATemperatureOutsideTheBenchOrItsThermostat) {
-  EXPECT_THAT(refusal({heat(61.0)}, ErrorCode::kLimit),
+  EXPECT_THAT(refusal({heat_to(61.0)}, ErrorCode::kLimit),
               AllOf(HasSubstr("p.json: /steps/0"), HasSubstr("61 degC"), HasSubstr("15 to 60")));
-  EXPECT_THAT(refusal({heat(14.0)}, ErrorCode::kLimit), HasSubstr("14 degC"));
+  EXPECT_THAT(refusal({heat_to(14.0)}, ErrorCode::kLimit), HasSubstr("14 degC"));
   config::BenchConfig bench;
   bench.thermostat.device.target_minimum = Celsius{20.0};
   bench.thermostat.device.target_maximum = Celsius{50.0};
-  EXPECT_THAT(refusal({heat(55.0)}, ErrorCode::kLimit, bench), HasSubstr("20 to 50"));
+  EXPECT_THAT(refusal({heat_to(55.0)}, ErrorCode::kLimit, bench), HasSubstr("20 to 50"));
 }
 
 TEST(Plan, RefusesAFieldOrACurrentOutsideTheBench) {
   const auto zeroed = step(config::CompensateField{0.2});
-  EXPECT_THAT(refusal({zeroed, sweep(Axis::kX, {0.0, -330.0})}, ErrorCode::kLimit),
+  EXPECT_THAT(refusal({zeroed, swept(Axis::kX, {0.0, -330.0})}, ErrorCode::kLimit),
               AllOf(HasSubstr("p.json: /steps/1"), HasSubstr("-330 uT"), HasSubstr("320 uT")));
   config::BenchConfig weak;
   weak.coil_vertical.current_limit = config::Ampere{3.5};
-  EXPECT_THAT(refusal({zeroed, sweep(Axis::kY, {0.0, 300.0})}, ErrorCode::kLimit, weak),
+  EXPECT_THAT(refusal({zeroed, swept(Axis::kY, {0.0, 300.0})}, ErrorCode::kLimit, weak),
               AllOf(HasSubstr("3.95 A"), HasSubstr("3.50 A")));
   config::BenchConfig weak_supply;
   weak_supply.coil_horizontal.device.minimum = -3.0;
   weak_supply.coil_horizontal.device.maximum = 3.0;
-  EXPECT_THAT(refusal({zeroed, sweep(Axis::kX, {0.0, 300.0})}, ErrorCode::kLimit, weak_supply),
+  EXPECT_THAT(refusal({zeroed, swept(Axis::kX, {0.0, 300.0})}, ErrorCode::kLimit, weak_supply),
               HasSubstr("3.00 A"));
 }
 
@@ -85,19 +85,19 @@ TEST(Plan, RefusesARunLongerThanTheBenchAllows) {
 TEST(Plan, RefusesASweepWithoutAZeroOrAwayFromItsCoil) {
   const auto zeroed = step(config::CompensateField{0.2});
   const auto turned = step(config::Rotate{90.0});
-  EXPECT_THAT(refusal({sweep(Axis::kX, {0.0})}, ErrorCode::kBadInput),
+  EXPECT_THAT(refusal({swept(Axis::kX, {0.0})}, ErrorCode::kBadInput),
               HasSubstr("without compensate_field"));
-  EXPECT_THAT(refusal({zeroed, turned, sweep(Axis::kZ, {0.0})}, ErrorCode::kBadInput),
+  EXPECT_THAT(refusal({zeroed, turned, swept(Axis::kZ, {0.0})}, ErrorCode::kBadInput),
               HasSubstr("without compensate_field"));
-  EXPECT_THAT(refusal({zeroed, sweep(Axis::kZ, {0.0})}, ErrorCode::kBadInput),
+  EXPECT_THAT(refusal({zeroed, swept(Axis::kZ, {0.0})}, ErrorCode::kBadInput),
               AllOf(HasSubstr("OZ at azimuth 0 deg"), HasSubstr("rotate to 90")));
-  EXPECT_TRUE(plan_of({turned, zeroed, sweep(Axis::kZ, {0.0})}));
+  EXPECT_TRUE(plan_of({turned, zeroed, swept(Axis::kZ, {0.0})}));
 }
 
 TEST(Plan, DrivesNorthAtAnyAzimuthAndHoldsTheOtherPairWithinItsLimit) {
   const auto zeroed = step(config::CompensateField{0.2});
   const auto turned = step(config::Rotate{45.0});
-  EXPECT_THAT(refusal({turned, zeroed, sweep(Axis::kY, {0.0})}, ErrorCode::kBadInput),
+  EXPECT_THAT(refusal({turned, zeroed, swept(Axis::kY, {0.0})}, ErrorCode::kBadInput),
               HasSubstr("OY at azimuth 45 deg"));
   config::Sweep north{Axis::kNorth, std::vector<double>{100.0}, 180.0, 5.0, "coil", 200.0};
   const auto plan = plan_of({turned, zeroed, step(north)});
@@ -110,8 +110,8 @@ TEST(Plan, DrivesNorthAtAnyAzimuthAndHoldsTheOtherPairWithinItsLimit) {
 }
 
 TEST(Plan, SaysWhichLimitsAreMetAndByHowMuch) {
-  const auto plan = plan_of({heat(31.0), heat(55.0), step(config::CompensateField{0.2}),
-                             sweep(Axis::kX, {0.0, 300.0, -300.0})});
+  const auto plan = plan_of({heat_to(31.0), heat_to(55.0), step(config::CompensateField{0.2}),
+                             swept(Axis::kX, {0.0, 300.0, -300.0})});
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_THAT(plan->limits_met, Contains(HasSubstr("31 to 55 degC, allowed 15 to 60")));
   EXPECT_THAT(plan->limits_met, Contains(HasSubstr("-300 to 300 uT, allowed up to 320")));
@@ -128,9 +128,9 @@ TEST(Plan, EstimatesWhatTheStepsTake) {
   bench.turntable.move_time = Seconds{20.0};
   bench.coil_horizontal.device.settle = Seconds{0.5};
   const auto plan = plan_of(
-      {heat(31.0), step(config::SettleTemperature{1.0, 300.0, 1.0, 7200.0, "", 60.0}),
+      {heat_to(31.0), step(config::SettleTemperature{1.0, 300.0, 1.0, 7200.0, "", 60.0}),
        step(config::Wait{0.0, 3000.0, "", 60.0}), step(config::Average{60.0, ""}),
-       step(config::CompensateField{0.2}), sweep(Axis::kX, {0.0}), step(config::Rotate{90.0})},
+       step(config::CompensateField{0.2}), swept(Axis::kX, {0.0}), step(config::Rotate{90.0})},
       bench);
   ASSERT_TRUE(plan) << plan.error().message;
   const auto estimate = [&](std::size_t i) { return plan->steps[i].estimate.count(); };
@@ -145,7 +145,7 @@ TEST(Plan, EstimatesWhatTheStepsTake) {
 
 TEST(Plan, ASettleIsEstimatedAtNoMoreThanItsTimeout) {
   const auto plan =
-      plan_of({heat(55.0), step(config::SettleTemperature{1.0, 300.0, 1.0, 600.0, "", 60.0})});
+      plan_of({heat_to(55.0), step(config::SettleTemperature{1.0, 300.0, 1.0, 600.0, "", 60.0})});
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_DOUBLE_EQ(plan->estimate.count(), 600.0);
 }

@@ -24,9 +24,9 @@ config::BenchConfig bench(const std::string& name) {
   return loaded ? *loaded : config::BenchConfig{};
 }
 
-Result<Plan> plan_of(const std::string& procedure,
-                     const std::map<std::string, config::ParameterValue>& overrides = {},
-                     const std::string& on = "simulated") {
+Result<Plan> ready_plan(const std::string& procedure,
+                        const std::map<std::string, config::ParameterValue>& overrides = {},
+                        const std::string& on = "simulated") {
   const auto loaded = config::load_procedure(kConfig / "procedures" / (procedure + ".json"));
   if (!loaded) return loaded.error();
   return make_plan(*loaded, bench(on), overrides);
@@ -47,7 +47,8 @@ TEST(ReadyProcedures, AllCanBePlannedOnEveryReadyBench) {
   int plans = 0;
   for (const auto& procedure : std::filesystem::directory_iterator(kConfig / "procedures")) {
     for (const auto& file : std::filesystem::directory_iterator(kConfig / "benches")) {
-      const auto plan = plan_of(procedure.path().stem().string(), {}, file.path().stem().string());
+      const auto plan =
+          ready_plan(procedure.path().stem().string(), {}, file.path().stem().string());
       EXPECT_TRUE(plan) << file.path() << ": " << plan.error().message;
       ++plans;
     }
@@ -56,7 +57,7 @@ TEST(ReadyProcedures, AllCanBePlannedOnEveryReadyBench) {
 }
 
 TEST(ReadyProcedures, ThermostatStepsMeasuresEachSetPointThreeTimes) {
-  const auto plan = plan_of("thermostat-steps");
+  const auto plan = ready_plan("thermostat-steps");
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_EQ(points_of(*plan),
             (std::map<std::string, int>{{"thermostat/baseline", 1}, {"thermostat/plateau", 18}}));
@@ -64,13 +65,14 @@ TEST(ReadyProcedures, ThermostatStepsMeasuresEachSetPointThreeTimes) {
 }
 
 TEST(ReadyProcedures, ThermostatStepsCoolsWhenAskedTo) {
-  const auto plan = plan_of("thermostat-steps", {{"cooling_c", std::vector<double>{45.0, 35.0}}});
+  const auto plan =
+      ready_plan("thermostat-steps", {{"cooling_c", std::vector<double>{45.0, 35.0}}});
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_EQ(points_of(*plan)["thermostat/cooling_plateau"], 6);
 }
 
 TEST(ReadyProcedures, CoilSweepGoesThroughThePapersLevelsOnThreeAxes) {
-  const auto plan = plan_of("coil-sweep");
+  const auto plan = ready_plan("coil-sweep");
   ASSERT_TRUE(plan) << plan.error().message;
   std::map<std::string, int> expected{{"coil/baseline", 2}};
   for (const std::string axis : {"coil_x", "coil_y", "coil_z"}) {
@@ -82,7 +84,7 @@ TEST(ReadyProcedures, CoilSweepGoesThroughThePapersLevelsOnThreeAxes) {
 }
 
 TEST(ReadyProcedures, AcceptanceIsBothTwice) {
-  const auto plan = plan_of("acceptance");
+  const auto plan = ready_plan("acceptance");
   ASSERT_TRUE(plan) << plan.error().message;
   const auto first = points_of(*plan, 1);
   EXPECT_EQ(first, points_of(*plan, 2));
