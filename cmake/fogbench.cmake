@@ -26,12 +26,14 @@ function(fogbench_library folder)
   fogbench_sources_at_once(fogbench_${folder})
 endfunction()
 
-# fogbench_test(<name> SOURCES a_test.cpp ... LINKS targets... LABEL unit|system|slow COST seconds)
-# declares one GoogleTest executable whose cases ctest runs one by one. The target `unit_tests`
-# builds those of label unit.
-add_custom_target(unit_tests)
+# fogbench_test(<name> SOURCES a_test.cpp ... LINKS targets... LABEL unit|system|slow COST seconds
+# THREADS) declares one GoogleTest executable whose cases ctest runs one by one. THREADS, for what
+# runs several, makes the label end in `_threads`. The target `quick_tests` builds what is not slow,
+# `threads_tests` what has threads.
+add_custom_target(quick_tests)
+add_custom_target(threads_tests)
 function(fogbench_test name)
-  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT;COST" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "THREADS" "LABEL;TIMEOUT;COST" "SOURCES;LINKS" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -52,9 +54,13 @@ function(fogbench_test name)
   if(FOGBENCH_SOURCES_AT_ONCE GREATER 1)
     target_precompile_headers(${name} REUSE_FROM fogbench_test_headers)
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
-    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} COST ${ARG_COST})
-  if(ARG_LABEL STREQUAL "unit")
-    add_dependencies(unit_tests ${name})
+  if(NOT ARG_LABEL STREQUAL "slow")
+    add_dependencies(quick_tests ${name})
   endif()
+  if(ARG_THREADS)
+    add_dependencies(threads_tests ${name})
+    string(APPEND ARG_LABEL "_threads")  # ctest -L takes a part of a label
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
+    PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT} COST ${ARG_COST})
 endfunction()

@@ -8,8 +8,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <deque>
 #include <functional>
 #include <random>
 #include <sstream>
@@ -101,18 +103,26 @@ TEST_F(FogbenchTest, KilledAtAnyMomentItLosesNoPrintedPoint) {
 }
 
 TEST_F(FogbenchTest, ASignalAbortsToTheSafeStateAndTheRecordSaysSo) {
-  for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
-    Process process(dry_run({"static-record", "--set", "average_s=1"}, {"--speed", "realtime"}));
-    ASSERT_TRUE(process.wait_for_output("static ", 60s));
-    process.signal(number);
-    const Finished done = process.wait(30s);
+  const std::array signals{SIGTERM, SIGINT, SIGHUP};
+  std::deque<Process> processes;  // at once: each of them begins in real time
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    processes.emplace_back(
+        dry_run({"static-record", "--set", "average_s=1"}, {"--speed", "realtime"}));
+  }
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    ASSERT_TRUE(processes[i].wait_for_output("static ", 60s));
+    processes[i].signal(signals[i]);
+    const Finished done = processes[i].wait(30s);
     EXPECT_EQ(done.status, 4);
     EXPECT_NE(done.err.find("aborted"), std::string::npos) << done.err;
     EXPECT_NE(done.err.find("in its safe state"), std::string::npos) << done.err;
     EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;
-    const auto runs = json({"runs", "--store", store(), "--json"})["runs"];
-    EXPECT_EQ(runs.back()["outcome"], "aborted");
-    const auto shown = json({"show", runs.back()["run"].dump(), "--store", store(), "--json"});
+  }
+  const auto runs = json({"runs", "--store", store(), "--json"})["runs"];
+  ASSERT_EQ(runs.size(), signals.size());
+  for (const auto& run : runs) {
+    EXPECT_EQ(run["outcome"], "aborted");
+    const auto shown = json({"show", run["run"].dump(), "--store", store(), "--json"});
     EXPECT_EQ(shown["safe_state_reached"], true);
   }
   expect_refused(fogbench({"export", "1", "--store", store()}), 3, "--unfinished");
