@@ -20,6 +20,11 @@ namespace fogbench::daemon {
 /// scenario are not those of the record; kLimit; kStore.
 Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, const Setup& setup);
 
+/// What the run that takes up another says of it, when the instruments are those of the record.
+/// Precondition: `procedure` takes one up. Errors: kDevice, and the instruments'.
+Result<procedures::Continuation> take_up(const PlannedProcedure& procedure,
+                                         procedures::RunEngine& engine, drivers::Clock& clock);
+
 /// The last run of this bench, when nobody ended it.
 Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const std::string& bench);
 
