@@ -169,13 +169,14 @@ Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, co
       drivers::seconds_of_utc(last.header.started_at) + std::max(0.0, *stopped - begun_s);
   planned->plan = std::move(resumed->plan);
   planned->takes_up = std::move(before);
+  planned->gyro = last.header.gyro_serial_number;
   return planned;
 }
 
 Result<Continuation> take_up(const PlannedProcedure& procedure, procedures::RunEngine& engine,
                              drivers::Clock& clock) {
   const TakenUp& before = *procedure.takes_up;
-  const auto instruments = engine.identify_instruments();
+  const auto instruments = engine.identify_instruments(procedure.gyro);
   if (!instruments) return instruments.error();
   if (const Status same = compare(before.instruments, *instruments); !same) return same.error();
   Continuation continuation = before.continuation;

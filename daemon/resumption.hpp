@@ -15,7 +15,8 @@
 
 namespace fogbench::daemon {
 
-/// Planned from the files' texts in the record, whatever has become of the files. Errors: kBadInput
+/// Planned from the files' texts in the record, whatever has become of the files, and for the gyro
+/// of the record: an operator confirms that it is still in its place. Errors: kBadInput
 /// when there is no such run, it was completed or taken up already, or bench, instruments' files or
 /// scenario are not those of the record; kLimit; kStore.
 Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, const Setup& setup);

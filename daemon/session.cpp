@@ -108,7 +108,8 @@ Result<PlannedProcedure> plan_procedure(const std::string& name, const config::B
   const auto texts = texts_of(plan->files);
   if (!texts) return texts.error();
   const nlohmann::ordered_json record{{"files", *texts}, {"parameters", to_json(parameters)}};
-  return PlannedProcedure{std::move(*plan), text_of(record), std::nullopt};
+  return PlannedProcedure{std::move(*plan), text_of(record), std::nullopt,
+                          bench.gyro.serial_number};
 }
 
 Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
@@ -174,7 +175,7 @@ Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure,
   header.bench_json = setup_.bench_json;
   header.scenario_json = setup_.scenario_json;
   if (setup_.simulated) header.seed = seed_;
-  header.gyro_serial_number = setup_.bench.gyro.serial_number;
+  header.gyro_serial_number = procedure.gyro;
   header.operator_name = operator_name;
   header.software_version = FOGBENCH_VERSION;
   header.started_at = drivers::utc_text(clock_->wall_now());
