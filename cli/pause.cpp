@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/control_client.hpp"
+#include "cli/status_text.hpp"
 #include "procedures/estimate.hpp"
 
 namespace fogbench::cli {
@@ -43,8 +44,8 @@ Result<ExitStatus> run_resume(const ResumeOptions& options) {
     fmt::print("Run {} is given up; what it measured stays in the run log.\n", *options.run);
     return ExitStatus::kDone;
   }
-  fmt::print("Job {} takes up run {}: {} steps, about {}\nNext: fogbench watch\n",
-             done->value("job", 0), *options.run, done->value("steps", 0),
+  fmt::print("Job {} takes up run {}{}: {} steps, about {}\nNext: fogbench watch\n",
+             done->value("job", 0), *options.run, gyro_text(*done), done->value("steps", 0),
              procedures::duration_text(config::Seconds{done->value("estimate_s", 0.0)}));
   return ExitStatus::kDone;
 }

@@ -34,11 +34,12 @@ Result<ExitStatus> run_queue(const QueueOptions& options) {
   using Align = TextTable::Align;
   TextTable table({{"job", ""},
                    {"procedure", "", Align::kLeft},
+                   {"gyro", "", Align::kLeft},
                    {"asked for by", "", Align::kLeft},
                    {"takes about", "", Align::kLeft}});
   for (const auto& job : queue->value("jobs", nlohmann::json::array())) {
     table.add_row({std::to_string(job.value("job", 0)), job.value("procedure", ""),
-                   job.value("by", ""),
+                   job.value("gyro", ""), job.value("by", ""),
                    procedures::duration_text(config::Seconds{job.value("estimate_s", 0.0)})});
   }
   fmt::print("{}", table.empty() ? "The queue is empty.\n" : table.text());

@@ -9,13 +9,15 @@
 #include "cli/common_options.hpp"
 #include "cli/control_client.hpp"
 #include "cli/output.hpp"
+#include "cli/status_text.hpp"
+#include "daemon/run_options.hpp"
 #include "procedures/estimate.hpp"
 
 namespace fogbench::cli {
 namespace {
 
 struct RunOptions {
-  std::string procedure, socket;
+  std::string procedure, gyro, socket;
   std::vector<std::string> set;
   bool json = false;
 };
@@ -35,14 +37,16 @@ Result<ExitStatus> run_run(const RunOptions& options) {
   }
   auto client = ControlClient::connect(options.socket);
   if (!client) return client.error();
-  const auto queued = (*client)->call("run", {{"procedure", procedure}, {"set", set}});
+  nlohmann::ordered_json params{{"procedure", procedure}, {"set", set}};
+  if (!options.gyro.empty()) params["gyro"] = options.gyro;
+  const auto queued = (*client)->call("run", params);
   if (!queued) return queued.error();
   if (options.json) {
     print_json(*queued);
     return ExitStatus::kDone;
   }
-  fmt::print("Job {}, {}: {} steps, about {}{}\n", queued->value("job", 0), options.procedure,
-             queued->value("steps", 0),
+  fmt::print("Job {}, {}{}: {} steps, about {}{}\n", queued->value("job", 0), options.procedure,
+             gyro_text(*queued), queued->value("steps", 0),
              procedures::duration_text(config::Seconds{queued->value("estimate_s", 0.0)}),
              queued->value("held", false) ? "; the queue is held (fogbench resume)" : "");
   fmt::print("Next: fogbench watch\n");
@@ -55,7 +59,7 @@ void add_run(CLI::App& app, Action& action) {
   add_command<RunOptions>(
       app, action, "run", "Queue a procedure on the daemon's bench",
       "  fogbench run acceptance\n"
-      "  fogbench run ./my-sweep.json --set average_s=60",
+      "  fogbench run ./my-sweep.json --set average_s=60 --gyro FOG-42",
       [](CLI::App& command, RunOptions& options) {
         command
             .add_option("PROCEDURE", options.procedure,
@@ -65,6 +69,7 @@ void add_run(CLI::App& app, Action& action) {
             .add_option("--set", options.set,
                         "name=value or name=value,value...: a parameter of the procedure")
             ->allow_extra_args(false);
+        daemon::add_gyro_option(command, options.gyro, "the daemon's, else the bench file's");
         add_socket_option(command, options.socket);
         command.add_flag("--json", options.json, "One JSON document on stdout");
       },

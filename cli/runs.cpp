@@ -19,6 +19,7 @@ nlohmann::ordered_json row_of(const daemon::StoredRun& run) {
   return {{"run", run.run},
           {"started_at", run.header.started_at},
           {"procedure", run.header.procedure},
+          {"gyro_serial_number", run.header.gyro_serial_number},
           {"bench", run.header.bench},
           {"seed",
            run.header.seed ? nlohmann::ordered_json(*run.header.seed) : nlohmann::ordered_json()},
@@ -46,13 +47,15 @@ Result<ExitStatus> run_runs(const RunsOptions& options) {
   TextTable table({{"run", ""},
                    {"started, UTC", "", Align::kLeft},
                    {"procedure", "", Align::kLeft},
+                   {"gyro", "", Align::kLeft},
                    {"bench", "", Align::kLeft},
                    {"seed", ""},
                    {"points", ""},
                    {"outcome", "", Align::kLeft}});
   for (const auto& run : *runs) {
     table.add_row({std::to_string(run.run), run.header.started_at, run.header.procedure,
-                   run.header.bench, run.header.seed ? std::to_string(*run.header.seed) : "-",
+                   run.header.gyro_serial_number, run.header.bench,
+                   run.header.seed ? std::to_string(*run.header.seed) : "-",
                    std::to_string(run.points), run.outcome()});
   }
   fmt::print("{}", table.empty() ? "No runs yet.\n" : table.text());

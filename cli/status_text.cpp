@@ -65,8 +65,9 @@ std::string status_text(const json& status) {
   std::string out;
   const json& run = at(status, "run");
   if (run.is_object()) {
-    out += fmt::format("{}: run {}, {}, asked for by {}\n", plain(at(status, "state")),
-                       plain(at(run, "run")), plain(at(run, "procedure")), plain(at(run, "by")));
+    out += fmt::format("{}: run {}, {}{}, asked for by {}\n", plain(at(status, "state")),
+                       plain(at(run, "run")), plain(at(run, "procedure")), gyro_text(run),
+                       plain(at(run, "by")));
     out += fmt::format("step {} of {}: {}\n", plain(at(run, "step")), plain(at(run, "steps")),
                        plain(at(run, "says")));
     out += fmt::format("{} so far, about {} left, {}\n", span_text(at(run, "elapsed_s")),
@@ -90,10 +91,10 @@ std::string status_text(const json& status) {
   if (interrupted.is_object()) {
     const std::string number = plain(at(interrupted, "run"));
     out += fmt::format(
-        "run {}, {}, was interrupted after {}: fogbench resume {} takes it up,\n"
+        "run {}, {}{}, was interrupted after {}: fogbench resume {} takes it up,\n"
         "fogbench resume {} --discard gives it up\n",
-        number, plain(at(interrupted, "procedure")), points_text(at(interrupted, "points")), number,
-        number);
+        number, plain(at(interrupted, "procedure")), gyro_text(interrupted),
+        points_text(at(interrupted, "points")), number, number);
   }
   const json& queue = at(status, "queue");
   if (real(at(queue, "jobs")) > 0) {
@@ -123,11 +124,16 @@ std::string status_text(const json& status) {
   return out;
 }
 
+std::string gyro_text(const json& job) {
+  const json& gyro = at(job, "gyro");
+  return gyro.is_string() && gyro != "" ? ", gyro " + plain(gyro) : "";
+}
+
 std::string ended_text(const json& ended) {
   return fmt::format(
-      "run {}, {}: {}, {}, {}; the bench is {}", plain(at(ended, "run")),
-      plain(at(ended, "procedure")), plain(at(ended, "outcome")), plain(at(ended, "reason")),
-      points_text(at(ended, "points")),
+      "run {}, {}{}: {}, {}, {}; the bench is {}", plain(at(ended, "run")),
+      plain(at(ended, "procedure")), gyro_text(ended), plain(at(ended, "outcome")),
+      plain(at(ended, "reason")), points_text(at(ended, "points")),
       at(ended, "safe_state_reached") == true ? "in its safe state" : "NOT in its safe state");
 }
 

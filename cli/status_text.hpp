@@ -12,8 +12,11 @@ namespace fogbench::cli {
 /// another version.
 std::string status_text(const nlohmann::json& status);
 
-/// "run 7, coil-sweep: completed, all steps done, 82 points; the bench is in its safe state", of
-/// the status's last_run.
+/// ", gyro FOG-42", of a run or a job; empty when nobody named one.
+std::string gyro_text(const nlohmann::json& job);
+
+/// "run 7, coil-sweep, gyro FOG-42: completed, all steps done, 82 points; the bench is in its safe
+/// state", of the status's last_run.
 std::string ended_text(const nlohmann::json& ended);
 
 /// Nothing runs, and nothing will until somebody asks for it.

@@ -12,7 +12,6 @@
 #include "daemon/desk_json.hpp"
 #include "daemon/metrics.hpp"
 #include "daemon/parameters_json.hpp"
-#include "daemon/resumption.hpp"
 #include "daemon/run_log.hpp"
 #include "daemon/session.hpp"
 
@@ -88,18 +87,26 @@ RpcError refusal(const Error& error) {
   return {code, error.message};
 }
 
-Outcome enqueue(RunDesk& desk, Order order, PlannedProcedure planned, const Person& by) {
-  ordered_json answer{{"steps", planned.plan.steps.size()},
-                      {"estimate_s", planned.plan.estimate.count()}};
-  const auto queued = desk.enqueue(std::move(order), std::move(planned), by);
+Outcome enqueue(RunDesk& desk, const Setup& setup, const std::filesystem::path& store, Order order,
+                const Caller& caller) {
+  auto planned = plan_order(order, setup, store);
+  if (!planned) return refusal(planned.error());
+  const Person by = person_of(
+      caller, order.takes_up != 0 ? fmt::format("resume run {}", order.takes_up)
+                                  : fmt::format("run {}{}", planned->plan.procedure,
+                                                order.gyro.empty() ? "" : ", gyro " + order.gyro));
+  ordered_json answer{{"steps", planned->plan.steps.size()},
+                      {"estimate_s", planned->plan.estimate.count()},
+                      {"gyro", planned->gyro}};
+  const auto queued = desk.enqueue(std::move(order), std::move(*planned), by);
   if (const auto* refused = std::get_if<RpcError>(&queued)) return *refused;
   answer["job"] = std::get<std::uint64_t>(queued);
   answer["held"] = desk.view().held;
   return answer;
 }
 
-Outcome run(RunDesk& desk, const config::BenchConfig& bench, const json& params,
-            const Caller& caller) {
+/// What the parameters of `run` ask for.
+std::variant<Order, RpcError> order_of(const json& params) {
   const auto name = params.find("procedure");
   if (name == params.end() || !name->is_string()) {
     return invalid("/params/procedure: expected a procedure's name, or its file's full path");
@@ -110,20 +117,13 @@ Outcome run(RunDesk& desk, const config::BenchConfig& bench, const json& params,
     return invalid("/params/set: expected {\"name\": number or [number, number...]}");
   }
   Order order{name->get<std::string>(), *parameters};
-  auto planned = plan_procedure(order.procedure, bench, order.set);
-  if (!planned) return refusal(planned.error());
-  const Person by = person_of(caller, "run " + planned->plan.procedure);
-  return enqueue(desk, std::move(order), std::move(*planned), by);
-}
-
-Outcome resume_run(RunDesk& desk, const Setup& setup, const std::filesystem::path& store,
-                   std::int64_t run, const Caller& caller) {
-  const auto log = RunLogReader::open(store);
-  if (!log) return refusal(log.error());
-  auto planned = plan_resumption(**log, run, setup);
-  if (!planned) return refusal(planned.error());
-  const Person by = person_of(caller, fmt::format("resume run {}", run));
-  return enqueue(desk, Order{{}, {}, run}, std::move(*planned), by);
+  if (const auto gyro = params.find("gyro"); gyro != params.end()) {
+    if (!gyro->is_string() || !is_serial_number(gyro->get_ref<const std::string&>())) {
+      return invalid(fmt::format("/params/gyro: expected {}", kSerialNumberRule));
+    }
+    order.gyro = gyro->get<std::string>();
+  }
+  return order;
 }
 
 /// Nobody else fills the queue meanwhile: that is this thread's.
@@ -193,9 +193,12 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
        }},
       {"run",
        Role::kOperator,
-       {"procedure", "set"},
-       [](Self& self, const json& params, Caller& caller) {
-         return run(self.desk_, self.setup_.bench, params, caller);
+       {"procedure", "set", "gyro"},
+       [](Self& self, const json& params, Caller& caller) -> Outcome {
+         auto order = order_of(params);
+         if (const auto* refused = std::get_if<RpcError>(&order)) return *refused;
+         return enqueue(self.desk_, self.setup_, self.store_, std::get<Order>(std::move(order)),
+                        caller);
        }},
       {"remove",
        Role::kOperator,
@@ -219,8 +222,8 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
          if (!params.contains("run")) return done(self.desk_.resume(person_of(caller, "resume")));
          const auto run = number_of(params, "run");
          if (!run) return invalid("/params/run: expected a run's number");
-         return resume_run(self.desk_, self.setup_, self.store_, static_cast<std::int64_t>(*run),
-                           caller);
+         return enqueue(self.desk_, self.setup_, self.store_,
+                        Order{{}, {}, static_cast<std::int64_t>(*run)}, caller);
        }},
       {"discard",
        Role::kOperator,

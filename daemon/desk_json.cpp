@@ -30,6 +30,7 @@ ordered_json to_json(const PresentRun& run) {
   return {{"run", run.run == 0 ? ordered_json() : ordered_json(run.run)},
           {"job", run.job},
           {"procedure", run.procedure},
+          {"gyro", run.gyro},
           {"by", run.by},
           {"step", std::min(now.step + 1, now.steps)},
           {"steps", now.steps},
@@ -45,6 +46,7 @@ ordered_json to_json(const EndedRun& run) {
   return {{"run", run.run == 0 ? ordered_json() : ordered_json(run.run)},
           {"job", run.job},
           {"procedure", run.procedure},
+          {"gyro", run.gyro},
           {"by", run.by},
           {"outcome", run.outcome},
           {"reason", short_text(run.reason)},
@@ -53,11 +55,8 @@ ordered_json to_json(const EndedRun& run) {
 }
 
 ordered_json to_json(const InterruptedRun& run) {
-  return {{"run", run.run},
-          {"procedure", run.procedure},
-          {"by", run.by},
-          {"started_at", run.started_at},
-          {"points", run.points}};
+  return {{"run", run.run}, {"procedure", run.procedure},   {"gyro", run.gyro},
+          {"by", run.by},   {"started_at", run.started_at}, {"points", run.points}};
 }
 
 ordered_json to_json(const procedures::MonitorRow& row) {
@@ -120,6 +119,7 @@ ordered_json to_json(const std::vector<QueuedJob>& queue) {
   for (const QueuedJob& job : queue) {
     jobs.push_back({{"job", job.job},
                     {"procedure", job.procedure},
+                    {"gyro", job.gyro},
                     {"by", job.by},
                     {"estimate_s", number(job.estimate.count())}});
   }

@@ -10,7 +10,6 @@
 #include "config/json_file.hpp"
 #include "config/output_file.hpp"
 #include "daemon/parameters_json.hpp"
-#include "daemon/resumption.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -41,15 +40,13 @@ std::optional<Kept> kept_from(const nlohmann::json& entry) {
   if (!set) return std::nullopt;
   kept.order.procedure = entry["procedure"].get<std::string>();
   kept.order.set = std::move(*set);
+  if (const auto gyro = entry.find("gyro"); gyro != entry.end()) {
+    if (!gyro->is_string() || !is_serial_number(gyro->get_ref<const std::string&>())) {
+      return std::nullopt;
+    }
+    kept.order.gyro = gyro->get<std::string>();
+  }
   return kept;
-}
-
-Result<PlannedProcedure> plan(const Order& order, const Setup& setup,
-                              const std::filesystem::path& store) {
-  if (order.takes_up == 0) return plan_procedure(order.procedure, setup.bench, order.set);
-  const auto log = RunLogReader::open(store);
-  if (!log) return log.error();
-  return plan_resumption(**log, order.takes_up, setup);
 }
 
 std::string title_of(const Order& order) {
@@ -70,9 +67,10 @@ Status QueueFile::load(RunDesk& desk, const Setup& setup, const std::filesystem:
     const auto kept = kept_from((*document)[i]);
     if (!kept) {
       return config::bad_input(fmt::format(
-          "{}: /{}: expected procedure, set, by and uid of a run that waits", path_.string(), i));
+          "{}: /{}: expected procedure, set, by, uid and perhaps gyro of a run that waits",
+          path_.string(), i));
     }
-    auto planned = plan(kept->order, setup, store);
+    auto planned = plan_order(kept->order, setup, store);
     if (!planned) {
       spdlog::warn("{}, asked for by {}, is no longer in the queue: {}", title_of(kept->order),
                    kept->by.name, planned.error().message);
@@ -111,6 +109,7 @@ Status QueueFile::write(const RunDesk::Waiting& waiting) const {
     } else {
       entry["procedure"] = order.procedure;
       entry["set"] = to_json(order.set);
+      if (!order.gyro.empty()) entry["gyro"] = order.gyro;
     }
     entry["by"] = by.name;
     entry["uid"] = by.uid;

@@ -1,21 +1,26 @@
 #include "daemon/resumption.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "config/scratch_folder.hpp"
 #include "daemon/parameters_json.hpp"
+#include "procedures/estimate.hpp"
 #include "procedures/resume_plan.hpp"
 
 namespace fogbench::daemon {
 namespace fs = std::filesystem;
 using procedures::Continuation;
+using procedures::InstrumentRecord;
 using procedures::Plan;
 
 namespace {
@@ -110,6 +115,26 @@ Status check(const StoredRun& run, const Setup& setup) {
   return {};
 }
 
+/// The same instruments must go on: the points of two gyros are no run.
+Status compare(const std::vector<InstrumentRecord>& then,
+               const std::vector<InstrumentRecord>& now) {
+  for (const InstrumentRecord& before : then) {
+    const auto same = [&](const auto& i) { return i.role == before.role; };
+    const auto found = std::find_if(now.begin(), now.end(), same);
+    const bool there = found != now.end() && found->identity == before.identity &&
+                       found->serial_number == before.serial_number;
+    if (there) continue;
+    const auto name = [](const InstrumentRecord& i) {
+      return fmt::format("\"{}\", serial number \"{}\"", i.identity, i.serial_number);
+    };
+    return Error{
+        ErrorCode::kDevice,
+        fmt::format("{}: {} answers, expected {}, which measured what is taken up", before.role,
+                    found == now.end() ? "nothing" : name(*found), name(before))};
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, const Setup& setup) {
@@ -144,7 +169,35 @@ Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, co
       drivers::seconds_of_utc(last.header.started_at) + std::max(0.0, *stopped - begun_s);
   planned->plan = std::move(resumed->plan);
   planned->takes_up = std::move(before);
+  planned->gyro = last.header.gyro_serial_number;
   return planned;
+}
+
+Result<Continuation> take_up(const PlannedProcedure& procedure, procedures::RunEngine& engine,
+                             drivers::Clock& clock) {
+  const TakenUp& before = *procedure.takes_up;
+  const auto instruments = engine.identify_instruments(procedure.gyro);
+  if (!instruments) return instruments.error();
+  if (const Status same = compare(before.instruments, *instruments); !same) return same.error();
+  Continuation continuation = before.continuation;
+  // The calendar may have been set back meanwhile.
+  const std::chrono::duration<double> now_s = clock.wall_now().time_since_epoch();
+  const double gap_s = std::max(0.0, std::round(now_s.count() - before.stopped_at_s));
+  std::vector<std::string> redone;
+  for (const procedures::PlannedStep& step : procedure.plan.steps) {
+    if (step.path.starts_with(procedures::kRedone)) redone.push_back(step.says);
+  }
+  continuation.says =
+      fmt::format("takes up run {} at step {}, {} after its last trace{}{}", continuation.run,
+                  continuation.first_step, procedures::duration_text(config::Seconds{gap_s}),
+                  redone.empty() ? "" : "; done again first: ", fmt::join(redone, "; "));
+  const nlohmann::ordered_json data{{"run", continuation.run},
+                                    {"first_step", continuation.first_step},
+                                    {"gap_s", gap_s},
+                                    {"redone", redone}};
+  continuation.data_json =
+      data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return continuation;
 }
 
 Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const std::string& bench) {

@@ -15,10 +15,16 @@
 
 namespace fogbench::daemon {
 
-/// Planned from the files' texts in the record, whatever has become of the files. Errors: kBadInput
+/// Planned from the files' texts in the record, whatever has become of the files, and for the gyro
+/// of the record: an operator confirms that it is still in its place. Errors: kBadInput
 /// when there is no such run, it was completed or taken up already, or bench, instruments' files or
 /// scenario are not those of the record; kLimit; kStore.
 Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, const Setup& setup);
+
+/// What the run that takes up another says of it, when the instruments are those of the record.
+/// Precondition: `procedure` takes one up. Errors: kDevice, and the instruments'.
+Result<procedures::Continuation> take_up(const PlannedProcedure& procedure,
+                                         procedures::RunEngine& engine, drivers::Clock& clock);
 
 /// The last run of this bench, when nobody ended it.
 Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const std::string& bench);

@@ -139,8 +139,8 @@ std::vector<QueuedJob> RunDesk::queue() const {
   const Lock lock(mutex_);
   std::vector<QueuedJob> jobs;
   for (const Job& job : queue_) {
-    jobs.push_back(
-        {job.job, job.procedure.plan.procedure, job.by.name, job.procedure.plan.estimate});
+    jobs.push_back({job.job, job.procedure.plan.procedure, job.by.name, job.procedure.plan.estimate,
+                    job.procedure.gyro});
   }
   return jobs;
 }
@@ -231,6 +231,7 @@ std::optional<Job> RunDesk::next_job() {
   run.job = job.job;
   run.procedure = job.procedure.plan.procedure;
   run.by = job.by.name;
+  run.gyro = job.procedure.gyro;
   run.progress.steps = job.procedure.plan.steps.size();
   run.progress.remaining = job.procedure.plan.estimate;
   view_.run = std::move(run);
@@ -319,6 +320,7 @@ void RunDesk::run_ended(const Result<procedures::RunSummary>& summary) {
   ++queue_changes_;
   EndedRun ended{view_.run->job, view_.run->run, view_.run->procedure, view_.run->by};
   ended.points = view_.run->points;
+  ended.gyro = view_.run->gyro;
   // Nothing was commanded in a run that never came to an end of its own.
   ended.safe_state_reached = !end_ || end_->safe_state_reached;
   ended.outcome = name_of(summary ? summary->end.outcome : procedures::RunOutcome::kFailed);

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "daemon/json_rpc.hpp"
+#include "daemon/order.hpp"
 #include "daemon/session.hpp"
 #include "daemon/totals.hpp"
 #include "procedures/recorder.hpp"
@@ -32,13 +33,6 @@ namespace fogbench::daemon {
 struct Person {
   std::string name;
   std::uint32_t uid = 0;
-};
-
-/// What was asked for, as it can be planned again by another process.
-struct Order {
-  std::string procedure;  ///< a ready one's name, or a file's full path
-  Parameters set;
-  std::int64_t takes_up = 0;  ///< a run that was interrupted, in place of the two; 0: none
 };
 
 struct Job {
@@ -53,6 +47,7 @@ struct QueuedJob {
   std::string procedure;
   std::string by;
   config::Seconds estimate{0.0};
+  std::string gyro;  ///< serial number, here and below
 };
 
 struct PresentRun {
@@ -64,6 +59,7 @@ struct PresentRun {
   std::size_t points = 0;
   bool pause_requested = false;
   bool abort_requested = false;
+  std::string gyro;
 };
 
 /// A run that nobody ended, found when the daemon started.
@@ -73,6 +69,7 @@ struct InterruptedRun {
   std::string by;
   std::string started_at;
   std::int64_t points = 0;
+  std::string gyro;
 };
 
 struct EndedRun {
@@ -84,6 +81,7 @@ struct EndedRun {
   std::string reason;
   bool safe_state_reached = true;
   std::size_t points = 0;
+  std::string gyro;
 };
 
 struct SeenEvent {

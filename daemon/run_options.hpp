@@ -1,5 +1,5 @@
 #pragma once
-// Command-line options that `fogbench dry-run` and fogbenchd share.
+// Command-line options that fogbench and fogbenchd share.
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/order.hpp"
 #include "daemon/session.hpp"
 
 namespace fogbench::daemon {
@@ -33,9 +34,13 @@ inline void add_seed_option(CLI::App& app, std::optional<std::uint64_t>& seed) {
       ->check(digits);
 }
 
-inline void add_gyro_option(CLI::App& app, std::string& serial_number) {
+inline void add_gyro_option(CLI::App& app, std::string& serial_number,
+                            const std::string& standard = "the bench file's") {
   app.add_option("--gyro", serial_number,
-                 "Serial number of the gyro under test (default: the bench file's)");
+                 "Serial number of the gyro under test (default: " + standard + ")")
+      ->check([](const std::string& text) {
+        return is_serial_number(text) ? "" : std::string("expected ") + kSerialNumberRule;
+      });
 }
 
 inline void add_speed_option(CLI::App& app, Speed& speed, const std::string& standard) {

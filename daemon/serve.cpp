@@ -108,7 +108,7 @@ Status take_over(const Setup& setup, const std::filesystem::path& store, QueueFi
         "given up (fogbench resume {} --discard)",
         (*left)->run, header.procedure, (*left)->run, (*left)->run);
     desk.offer({(*left)->run, header.procedure, header.operator_name, header.started_at,
-                (*left)->points - (*left)->points_void});
+                (*left)->points - (*left)->points_void, header.gyro_serial_number});
   }
   if (const Status loaded = queue.load(desk, setup, store); !loaded) return loaded;
   const std::size_t jobs = desk.view().jobs;
@@ -121,7 +121,8 @@ void run_jobs(Session& session, RunDesk& desk) {
   try {
     while (const auto job = desk.next_job()) {
       const std::string& name = job->procedure.plan.procedure;
-      spdlog::info("job {}, {}: begins, asked for by {}", job->job, name, job->by.name);
+      spdlog::info("job {}, {}, gyro \"{}\": begins, asked for by {}", job->job, name,
+                   job->procedure.gyro, job->by.name);
       const auto summary = session.run(job->procedure, job->by.name);
       if (summary) {
         const procedures::RunEnd& end = summary->end;

@@ -1,11 +1,7 @@
 #include "daemon/session.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
@@ -15,10 +11,9 @@
 #include "config/json_file.hpp"
 #include "config/paths.hpp"
 #include "daemon/parameters_json.hpp"
+#include "daemon/resumption.hpp"
 #include "drivers/open_bench.hpp"
 #include "drivers/open_ports.hpp"
-#include "procedures/estimate.hpp"
-#include "procedures/resume_plan.hpp"
 #include "simulator/simulated_bench.hpp"
 
 namespace fogbench::daemon {
@@ -56,50 +51,6 @@ Result<std::vector<fs::path>> files_of_bench(const fs::path& file) {
 /// The name of a file may be any bytes; JSON text may not.
 std::string text_of(const nlohmann::ordered_json& record) {
   return record.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-/// The same instruments must go on: the points of two gyros are no run.
-Status compare(const std::vector<procedures::InstrumentRecord>& then,
-               const std::vector<procedures::InstrumentRecord>& now) {
-  for (const procedures::InstrumentRecord& before : then) {
-    const auto same = [&](const auto& i) { return i.role == before.role; };
-    const auto found = std::find_if(now.begin(), now.end(), same);
-    const bool there = found != now.end() && found->identity == before.identity &&
-                       found->serial_number == before.serial_number;
-    if (there) continue;
-    const auto name = [](const procedures::InstrumentRecord& i) {
-      return fmt::format("\"{}\", serial number \"{}\"", i.identity, i.serial_number);
-    };
-    return Error{
-        ErrorCode::kDevice,
-        fmt::format("{}: {} answers, expected {}, which measured what is taken up", before.role,
-                    found == now.end() ? "nothing" : name(*found), name(before))};
-  }
-  return {};
-}
-
-Result<procedures::Continuation> take_up(const TakenUp& before, const procedures::Plan& plan,
-                                         procedures::RunEngine& engine, drivers::Clock& clock) {
-  const auto instruments = engine.identify_instruments();
-  if (!instruments) return instruments.error();
-  if (const Status same = compare(before.instruments, *instruments); !same) return same.error();
-  procedures::Continuation continuation = before.continuation;
-  // The calendar may have been set back meanwhile.
-  const std::chrono::duration<double> now_s = clock.wall_now().time_since_epoch();
-  const double gap_s = std::max(0.0, std::round(now_s.count() - before.stopped_at_s));
-  std::vector<std::string> redone;
-  for (const procedures::PlannedStep& step : plan.steps) {
-    if (step.path.starts_with(procedures::kRedone)) redone.push_back(step.says);
-  }
-  continuation.says =
-      fmt::format("takes up run {} at step {}, {} after its last trace{}{}", continuation.run,
-                  continuation.first_step, procedures::duration_text(config::Seconds{gap_s}),
-                  redone.empty() ? "" : "; done again first: ", fmt::join(redone, "; "));
-  continuation.data_json = text_of({{"run", continuation.run},
-                                    {"first_step", continuation.first_step},
-                                    {"gap_s", gap_s},
-                                    {"redone", redone}});
-  return continuation;
 }
 
 }  // namespace
@@ -157,7 +108,8 @@ Result<PlannedProcedure> plan_procedure(const std::string& name, const config::B
   const auto texts = texts_of(plan->files);
   if (!texts) return texts.error();
   const nlohmann::ordered_json record{{"files", *texts}, {"parameters", to_json(parameters)}};
-  return PlannedProcedure{std::move(*plan), text_of(record), std::nullopt};
+  return PlannedProcedure{std::move(*plan), text_of(record), std::nullopt,
+                          bench.gyro.serial_number};
 }
 
 Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
@@ -223,14 +175,14 @@ Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure,
   header.bench_json = setup_.bench_json;
   header.scenario_json = setup_.scenario_json;
   if (setup_.simulated) header.seed = seed_;
-  header.gyro_serial_number = setup_.bench.gyro.serial_number;
+  header.gyro_serial_number = procedure.gyro;
   header.operator_name = operator_name;
   header.software_version = FOGBENCH_VERSION;
   header.started_at = drivers::utc_text(clock_->wall_now());
   header.frame_rate_hz = bench_.gyro->frame_rate_hz();
   header.reference_rate_deg_per_h = setup_.bench.gyro.reference_rate.value;
   if (procedure.takes_up) {
-    auto continuation = take_up(*procedure.takes_up, procedure.plan, *engine_, *clock_);
+    auto continuation = take_up(procedure, *engine_, *clock_);
     if (!continuation) return continuation.error();
     header.continues = std::move(*continuation);
   }

@@ -59,9 +59,10 @@ struct PlannedProcedure {
   procedures::Plan plan;
   std::string procedure_json;  ///< the texts of its files and the parameters given, for the record
   std::optional<TakenUp> takes_up;
+  std::string gyro;  ///< serial number of the one that it measures; empty: nobody said
 };
 
-/// Errors: kBadInput, kLimit.
+/// For the bench's gyro. Errors: kBadInput, kLimit.
 Result<PlannedProcedure> plan_procedure(const std::string& name, const config::BenchConfig& bench,
                                         const Parameters& parameters);
 

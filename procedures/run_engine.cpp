@@ -169,8 +169,11 @@ RunEngine::RunEngine(const config::BenchConfig& config, drivers::Bench& bench,
                      drivers::Clock& clock, drivers::Operator& person, Recorder& recorder)
     : config_(config), bench_(bench), clock_(clock), operator_(person), recorder_(recorder) {}
 
-Result<std::vector<InstrumentRecord>> RunEngine::identify_instruments() {
+Result<std::vector<InstrumentRecord>> RunEngine::identify_instruments(
+    const std::string& gyro_serial_number) {
   std::vector<InstrumentRecord> records;
+  config::InstrumentConfig gyro = config_.gyro;
+  gyro.serial_number = gyro_serial_number;
   const auto identify = [&](const char* role, drivers::Instrument& instrument,
                             const config::InstrumentConfig& config) -> Status {
     auto identity = instrument.identity();
@@ -186,7 +189,7 @@ Result<std::vector<InstrumentRecord>> RunEngine::identify_instruments() {
         identify("coil_vertical", *bench_.coil_vertical, config_.coil_vertical),
         identify("magnetometer", *bench_.magnetometer, config_.magnetometer),
         identify("turntable", *bench_.turntable, config_.turntable),
-        identify("gyro", *bench_.gyro, config_.gyro)}) {
+        identify("gyro", *bench_.gyro, gyro)}) {
     if (!status) return status.error();
   }
   return records;
@@ -211,7 +214,7 @@ Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {
       engine.pause_requested_ = false;
     }
   } const forget{*this};
-  const auto instruments = identify_instruments();
+  const auto instruments = identify_instruments(header.gyro_serial_number);
   if (!instruments) return instruments.error();
   const auto number = recorder_.begin_run(header, *instruments);
   if (!number) return number.error();

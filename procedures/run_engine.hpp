@@ -70,8 +70,9 @@ class RunEngine {
   /// failed or aborted run is a RunSummary that says so. An engine may run again after an end.
   Result<RunSummary> run(const Plan& plan, const RunHeader& header);
 
-  /// Asks each instrument who it is. Errors: the instrument's.
-  Result<std::vector<InstrumentRecord>> identify_instruments();
+  /// Asks each instrument who it is. The gyro under test comes and goes: its serial number is the
+  /// run's, the others' are the bench's. Errors: the instrument's.
+  Result<std::vector<InstrumentRecord>> identify_instruments(const std::string& gyro_serial_number);
 
   /// For an operator whose answer takes time: called from within confirm() again and again until it
   /// has come. Keeps watch over the bench for up to a second. An error (an abort, an instrument

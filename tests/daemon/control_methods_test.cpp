@@ -110,6 +110,31 @@ TEST_F(ControlMethodsTest, QueuesWhatTheBenchCanDoAndNothingElse) {
   EXPECT_EQ(refusal("remove", {{"job", 1}}, operator_), RpcCode::kNotFound);
 }
 
+TEST_F(ControlMethodsTest, AJobIsForTheGyroThatItNamesElseForTheBenchs) {
+  const std::string file = procedure(R"({"step": "average", "duration_s": 5, "segment": "a"})");
+  EXPECT_EQ(result("run", {{"procedure", file}, {"gyro", "ФОГ 42"}})["gyro"], "ФОГ 42");
+  EXPECT_EQ(result("run", {{"procedure", file}})["gyro"], "SIM-FOG-1");
+  const json jobs = result("queue")["jobs"];
+  ASSERT_EQ(jobs.size(), 2U);
+  EXPECT_EQ(jobs[0]["gyro"], "ФОГ 42");
+  EXPECT_EQ(jobs[1]["gyro"], "SIM-FOG-1");
+  EXPECT_EQ(desk_.waiting().orders[1].first.gyro, "") << "another daemon's may be another";
+  ASSERT_TRUE(desk_.next_job());
+  EXPECT_EQ(result("status")["run"]["gyro"], "ФОГ 42");
+
+  const json wrong[] = {"",        " ",     " FOG-42",   "FOG-42 ",
+                        "FOG\n42", "FOG\t", "\x1b[31m7", std::string(65, '7'),
+                        42,        nullptr};
+  for (const json& gyro : wrong) {
+    const json refused = ask("run", {{"procedure", file}, {"gyro", gyro}}, operator_);
+    EXPECT_EQ(refused["error"]["code"], static_cast<int>(RpcCode::kInvalidParams)) << gyro;
+    EXPECT_EQ(refused["error"]["message"],
+              "/params/gyro: expected a serial number of 1 to 64 bytes on one line, without spaces "
+              "around it");
+  }
+  result("run", {{"procedure", file}, {"gyro", std::string(64, '7')}});
+}
+
 TEST_F(ControlMethodsTest, ParametersThatAreWrongOrUnknownAreRefused) {
   const std::pair<const char*, json> wrong[] = {
       {"status", {{"verbose", true}}},
@@ -188,11 +213,13 @@ TEST_F(ControlMethodsTest, AnInterruptedRunIsTakenUpOrGivenUp) {
     header.bench_json = setup_.bench_json;
     header.scenario_json = setup_.scenario_json;
     header.started_at = "2026-01-01T00:00:00Z";
+    header.gyro_serial_number = "FOG-42";
     ASSERT_TRUE((*log)->begin_run(header, {}));
   }
   EXPECT_EQ(refusal("discard", {{"run", 1}}, operator_), RpcCode::kNotFound);
-  desk_.offer({1, "p", "alice", "2026-01-01T00:00:00Z", 0});
+  desk_.offer({1, "p", "alice", "2026-01-01T00:00:00Z", 0, "FOG-42"});
   EXPECT_EQ(result("status")["interrupted"]["run"], 1);
+  EXPECT_EQ(result("status")["interrupted"]["gyro"], "FOG-42");
   EXPECT_EQ(refusal("resume", {{"run", 2}}, operator_), RpcCode::kBadInput);
   EXPECT_EQ(refusal("resume", {{"run", "1"}}, operator_), RpcCode::kInvalidParams);
   EXPECT_EQ(refusal("resume", {{"run", 1}}, observer_), RpcCode::kPermission);
@@ -200,6 +227,7 @@ TEST_F(ControlMethodsTest, AnInterruptedRunIsTakenUpOrGivenUp) {
   desk_.hold();
   const json job = result("resume", {{"run", 1}});
   EXPECT_EQ(job["steps"], 1);
+  EXPECT_EQ(job["gyro"], "FOG-42") << "the record's, not the bench's";
   EXPECT_EQ(job["held"], false);
   EXPECT_EQ(desk_.waiting().orders.front().first.takes_up, 1);
 

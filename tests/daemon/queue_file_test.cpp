@@ -23,9 +23,12 @@ class QueueFileTest : public testing::Test {
   }
 
   void enqueue(RunDesk& desk, const std::string& procedure, const Parameters& set) {
-    auto planned = plan_procedure(procedure, setup_.bench, set);
+    enqueue(desk, Order{procedure, set});
+  }
+  void enqueue(RunDesk& desk, const Order& order) {
+    auto planned = plan_order(order, setup_, store_);
     ASSERT_TRUE(planned) << planned.error().message;
-    desk.enqueue({procedure, set}, std::move(*planned), {"alice", 1000});
+    desk.enqueue(order, std::move(*planned), {"alice", 1000});
   }
   std::string ready(const std::string& name) const {
     return (tests::source_tree() / "config/procedures" / (name + ".json")).string();
@@ -52,6 +55,24 @@ TEST_F(QueueFileTest, WhatWaitsOutlivesTheDaemonAndIsHeld) {
   EXPECT_EQ(waiting[1].second.name, "alice");
   EXPECT_EQ(waiting[1].second.uid, 1000U);
   EXPECT_TRUE(next.view().held) << "a bench that comes back waits for a person";
+}
+
+TEST_F(QueueFileTest, EachJobKeepsItsGyroAndOneWithoutTakesTheNewDaemons) {
+  RunDesk desk;
+  enqueue(desk, Order{ready("static-record"), {}, 0, "FOG-42"});
+  enqueue(desk, ready("static-record"), {});
+  QueueFile(store_).update(desk);
+  const auto kept = nlohmann::json::parse(support::read_text(file_));
+  EXPECT_EQ(kept[0]["gyro"], "FOG-42");
+  EXPECT_FALSE(kept[1].contains("gyro")) << "as in files of old";
+  setup_.bench.gyro.serial_number = "FOG-7";
+  RunDesk next;
+  ASSERT_TRUE(load(next));
+  const auto jobs = next.queue();
+  ASSERT_EQ(jobs.size(), 2U);
+  EXPECT_EQ(jobs[0].gyro, "FOG-42");
+  EXPECT_EQ(jobs[1].gyro, "FOG-7");
+  EXPECT_EQ(next.waiting().orders[0].first.gyro, "FOG-42") << "and the next file has it";
 }
 
 TEST_F(QueueFileTest, AnEmptyQueueLeavesNoFile) {
@@ -101,6 +122,9 @@ TEST_F(QueueFileTest, AFileThatIsNoneOfOursIsRefusedInOneLine) {
        {std::pair{"{", "store.db.queue"}, std::pair{"{}", "expected a list"},
         std::pair{R"([{"by": "a", "uid": 1}])", "/0: expected procedure"},
         std::pair{R"([{"by": 1, "uid": 1}])", "/0: expected procedure"},
+        std::pair{R"([{"procedure": "p", "set": {}, "gyro": "a\nb", "by": "a", "uid": 1}])",
+                  "perhaps gyro"},
+        std::pair{R"([{"procedure": "p", "set": {}, "gyro": 7, "by": "a", "uid": 1}])", "/0"},
         std::pair{R"([{"takes_up": -1, "by": "a", "uid": 1}])", "/0"}}) {
     folder_.file("store.db.queue", text);
     RunDesk desk;

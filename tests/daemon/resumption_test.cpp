@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "daemon/run_log.hpp"
 #include "daemon/simulated_operator.hpp"
 #include "tests/support/source_tree.hpp"
@@ -37,6 +40,7 @@ class ResumptionTest : public testing::Test {
   }
 
   void interrupt(const std::string& gyro = "SIM-FOG-1") {
+    header_.gyro_serial_number = gyro;
     const auto log = RunLog::open(store_);
     ASSERT_TRUE(log) << log.error().message;
     ASSERT_TRUE((*log)->begin_run(header_, {{"gyro", identity_, gyro, "", ""}}));
@@ -114,11 +118,14 @@ TEST_F(ResumptionTest, OtherInstrumentsThanThoseOfTheRecordDoNotGoOn) {
     EXPECT_TRUE(session) << session.error().message;
     return (*session)->run(*planned);
   };
-  interrupt("ANOTHER-1");
+  const std::string simulated = std::exchange(identity_, "ANOTHER");
+  interrupt();
+  identity_ = simulated;
   const auto refused = take_up(1);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kDevice);
-  EXPECT_THAT(refused.error().message, HasSubstr("serial number \"ANOTHER-1\", which measured"));
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("expected \"ANOTHER\", serial number \"SIM-FOG-1\", which measured"));
   EXPECT_EQ(refusal(1), "taken up") << "nothing was begun: it can still be taken up";
 
   interrupt();
@@ -132,6 +139,25 @@ TEST_F(ResumptionTest, OtherInstrumentsThanThoseOfTheRecordDoNotGoOn) {
   EXPECT_GT((*points)[1].point.time_s, 7.0) << "on one axis of time";
   EXPECT_THAT(refusal(2), HasSubstr("did already"));
   EXPECT_THAT(refusal(done->run), HasSubstr("it was completed"));
+}
+
+TEST_F(ResumptionTest, GoesOnWithTheGyroOfTheRecordWhateverTheDaemonsIs) {
+  interrupt("FOG-42");
+  setup_.bench.gyro.serial_number = "FOG-7";
+  const auto planned = plan();
+  ASSERT_TRUE(planned) << planned.error().message;
+  EXPECT_EQ(planned->gyro, "FOG-42");
+  SimulatedOperator person;
+  const auto session = Session::open(setup_, 1, store_, Speed::kMaximum, person);
+  ASSERT_TRUE(session) << session.error().message;
+  const auto done = (*session)->run(*planned);
+  ASSERT_TRUE(done) << done.error().message;
+  const auto log = RunLogReader::open(store_);
+  EXPECT_EQ((*log)->run(done->run)->header.gyro_serial_number, "FOG-42");
+  const auto instruments = (*log)->instruments(done->run);
+  EXPECT_TRUE(std::any_of(instruments->begin(), instruments->end(), [](const auto& instrument) {
+    return instrument.role == "gyro" && instrument.serial_number == "FOG-42";
+  }));
 }
 
 TEST_F(ResumptionTest, TwoRunsNeverTakeUpTheSame) {

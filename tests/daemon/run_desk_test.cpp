@@ -133,20 +133,25 @@ TEST_F(RunDeskTest, ARunAsksAndTheRecordSaysWhoDidWhat) {
 
 TEST_F(RunDeskTest, AnOrderForOneRunNeverFallsOnTheNext) {
   const std::uint64_t first = enqueue(kAsks);
+  bench_.gyro.serial_number = "FOG-42";
   const std::uint64_t second = enqueue(kMeasures);
-  wait_for_question();
+  EXPECT_EQ(wait_for_question().run->gyro, "SIM-FOG-1");
   EXPECT_FALSE(desk_.pause(alice_));
   EXPECT_FALSE(desk_.abort(bob_));
   const DeskView held = wait_for_end_of(first);
   EXPECT_EQ(held.last_run->outcome, "aborted");
   EXPECT_TRUE(held.held) << "nothing begins by itself after an abort";
-  EXPECT_EQ(desk_.queue().size(), 1U);
+  EXPECT_EQ(held.last_run->gyro, "SIM-FOG-1");
+  ASSERT_EQ(desk_.queue().size(), 1U);
+  EXPECT_EQ(desk_.queue()[0].gyro, "FOG-42");
 
   EXPECT_FALSE(desk_.resume(alice_));
   EXPECT_EQ(wait_for_end_of(second).last_run->outcome, "completed");
   leave();
   EXPECT_TRUE(record_.has_event("abort, by bob"));
   EXPECT_EQ(record_.ends.size(), 2U);
+  EXPECT_EQ(record_.headers.at(0).gyro_serial_number, "SIM-FOG-1");
+  EXPECT_EQ(record_.headers.at(1).gyro_serial_number, "FOG-42");
 }
 
 TEST_F(RunDeskTest, DecliningAborts) {

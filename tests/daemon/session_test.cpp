@@ -34,9 +34,11 @@ TEST(Session, RecordsIntoWhatItsCallerKeeps) {
   auto setup = load_setup(
       {(ready / "benches/simulated.json").string(), (ready / "scenarios/clean.json").string()});
   ASSERT_TRUE(setup) << setup.error().message;
-  const auto planned = plan_procedure((ready / "procedures/static-record.json").string(),
-                                      setup->bench, {{"duration_s", 10.0}, {"average_s", 5.0}});
+  auto planned = plan_procedure((ready / "procedures/static-record.json").string(), setup->bench,
+                                {{"duration_s", 10.0}, {"average_s", 5.0}});
   ASSERT_TRUE(planned) << planned.error().message;
+  EXPECT_EQ(planned->gyro, "SIM-FOG-1");
+  planned->gyro = "FOG-42";
   test::MemoryRecorder record;
   SimulatedOperator person;
   const auto session = Session::open(std::move(*setup), 3, record, Speed::kMaximum, person);
@@ -46,6 +48,11 @@ TEST(Session, RecordsIntoWhatItsCallerKeeps) {
   EXPECT_EQ(summary->end.outcome, procedures::RunOutcome::kCompleted);
   EXPECT_FALSE(record.points.empty());
   EXPECT_EQ(record.headers.at(0).seed, 3U);
+  EXPECT_EQ(record.headers.at(0).gyro_serial_number, "FOG-42");
+  for (const procedures::InstrumentRecord& instrument : record.instrument_records) {
+    EXPECT_EQ(instrument.serial_number == "FOG-42", instrument.role == "gyro") << instrument.role;
+  }
+  EXPECT_EQ(record.instrument_records.size(), 6U);
 }
 
 TEST(Session, ABenchIsSimulatedOrRealAsAWhole) {

@@ -28,9 +28,10 @@ TEST_F(ControlTest, RunsWhatIsQueuedAndSaysHowItEnded) {
   EXPECT_EQ(queued["job"], 1);
   EXPECT_EQ(queued["steps"], 8);
   wait_for_prompt();
-  const Finished second = fogbench({"run", procedure("second", 1)});
+  const Finished second = fogbench({"run", procedure("second", 1), "--gyro", "FOG-42"});
   EXPECT_EQ(second.status, 0) << second.err;
   EXPECT_NE(second.out.find("Job 2"), std::string::npos) << second.out;
+  EXPECT_NE(second.out.find(", gyro FOG-42: "), std::string::npos) << second.out;
 
   Process quiet(command({"watch", "--every", "0.1"}));
   Process follows(command({"watch", "--json"}));
@@ -41,7 +42,8 @@ TEST_F(ControlTest, RunsWhatIsQueuedAndSaysHowItEnded) {
   EXPECT_EQ(watched.status, 0) << watched.err;
   EXPECT_EQ(std::count(watched.out.begin(), watched.out.end(), '\n'), 1)
       << "quiet but for the end: " << watched.out;
-  EXPECT_NE(watched.out.find("run 2, second: completed"), std::string::npos) << watched.out;
+  EXPECT_NE(watched.out.find("run 2, second, gyro FOG-42: completed"), std::string::npos)
+      << watched.out;
   EXPECT_EQ(watched.err, "");
   EXPECT_EQ(fogbench({"queue"}).out, "The queue is empty.\n");
 
@@ -53,6 +55,9 @@ TEST_F(ControlTest, RunsWhatIsQueuedAndSaysHowItEnded) {
 
   expect_refused(fogbench({"run", "no-such"}), 3, "coil-sweep");
   expect_refused(fogbench({"run", "coil-sweep", "--set", "levels_ut=0,900"}), 3, "900");
+  for (const char* gyro : {"", " FOG-42", "FOG\n42", "FOG-\xff"}) {
+    expect_refused(fogbench({"run", "coil-sweep", "--gyro", gyro}), 2, "1 to 64 bytes on one line");
+  }
   expect_refused(fogbench({"pause"}), 4, "nothing is running");
   expect_refused(fogbench({"abort"}), 4, "nothing is running");
   expect_refused(fogbench({"resume"}), 4, "nothing is running");

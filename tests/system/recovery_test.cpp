@@ -45,9 +45,10 @@ class RecoveryTest : public ControlTest {
 
 TEST_F(RecoveryTest, AfterTheDeathOfTheDaemonARunIsTakenUpAndTheQueueIsThere) {
   auto daemon = serve();
-  json({"run", procedure("long", 40), "--json"});
-  json({"run", procedure("next", 1), "--json"});
+  json({"run", procedure("long", 40), "--gyro", "FOG-42", "--json"});
+  json({"run", procedure("next", 1), "--gyro", "FOG-43", "--json"});
   wait_for_points(5);
+  EXPECT_NE(fogbench({"status"}).out.find("run 1, long, gyro FOG-42, asked"), std::string::npos);
   daemon->signal(SIGKILL);
   EXPECT_EQ(daemon->wait(30s).signal, SIGKILL);
 
@@ -55,13 +56,16 @@ TEST_F(RecoveryTest, AfterTheDeathOfTheDaemonARunIsTakenUpAndTheQueueIsThere) {
   const auto back = status();
   EXPECT_EQ(back["state"], "idle") << "nothing begins by itself";
   EXPECT_EQ(back["interrupted"]["run"], 1);
+  EXPECT_EQ(back["interrupted"]["gyro"], "FOG-42");
   EXPECT_GE(back["interrupted"]["points"], 5);
   EXPECT_EQ(back["queue"]["jobs"], 1);
   EXPECT_EQ(back["queue"]["held"], true);
+  EXPECT_NE(fogbench({"queue"}).out.find("FOG-43"), std::string::npos);
   EXPECT_NE(fogbench({"status"}).out.find("fogbench resume 1"), std::string::npos);
 
   expect_refused(fogbench({"resume", "7"}), 3, "no run 7");
-  EXPECT_NE(fogbench({"resume", "1"}).out.find("Job 2 takes up run 1"), std::string::npos);
+  EXPECT_NE(fogbench({"resume", "1"}).out.find("Job 2 takes up run 1, gyro FOG-42:"),
+            std::string::npos);
   EXPECT_EQ(fogbench({"watch"}).status, 0);
   EXPECT_TRUE(status()["interrupted"].is_null());
   const auto runs = json({"runs", "--store", store(), "--json"})["runs"];
@@ -69,6 +73,15 @@ TEST_F(RecoveryTest, AfterTheDeathOfTheDaemonARunIsTakenUpAndTheQueueIsThere) {
   EXPECT_EQ(runs[0]["outcome"], "interrupted");
   EXPECT_EQ(runs[1]["outcome"], "completed");
   EXPECT_EQ(runs[2]["procedure"], "next") << "what waited goes on after it";
+  for (const auto& [run, gyro] :
+       {std::pair{"1", "FOG-42"}, std::pair{"2", "FOG-42"}, std::pair{"3", "FOG-43"}}) {
+    EXPECT_EQ(runs[std::stoul(run) - 1]["gyro_serial_number"], gyro) << "the daemon names none";
+    const auto record = stored(run);
+    EXPECT_EQ(record["gyro_serial_number"], gyro);
+    for (const auto& instrument : record["instruments"]) {
+      EXPECT_EQ(instrument["serial_number"] == gyro, instrument["role"] == "gyro") << instrument;
+    }
+  }
   EXPECT_EQ(points_in_order("2"), 40U);
   EXPECT_TRUE(has_event(stored("2"), "takes up run 1 at step "));
   expect_refused(fogbench({"resume", "1"}), 3, "run 2 did already");

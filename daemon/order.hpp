@@ -1,0 +1,31 @@
+#pragma once
+// What an operator asks for, as a request brings it and the kept queue holds it.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "config/result.hpp"
+#include "daemon/session.hpp"
+
+namespace fogbench::daemon {
+
+/// It can be planned again by another process.
+struct Order {
+  std::string procedure;  ///< a ready one's name, or a file's full path
+  Parameters set;
+  std::int64_t takes_up = 0;  ///< a run that was interrupted, in place of the others; 0: none
+  std::string gyro;  ///< serial number; empty: that of the daemon, else of the bench's file
+};
+
+/// `store` is the run log that holds what is taken up. Errors: as plan_procedure, plan_resumption.
+Result<PlannedProcedure> plan_order(const Order& order, const Setup& setup,
+                                    const std::filesystem::path& store);
+
+/// What kSerialNumberRule says.
+bool is_serial_number(std::string_view text);
+inline constexpr auto kSerialNumberRule =
+    "a serial number of 1 to 64 bytes on one line, without spaces around it";
+
+}  // namespace fogbench::daemon
