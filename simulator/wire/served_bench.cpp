@@ -44,7 +44,7 @@ std::vector<std::string> parts_of(const std::string& connection, std::size_t mos
 }
 
 /// 0 for what is no number of 16 bits in hexadecimal.
-std::uint16_t hexadecimal(std::string_view text) {
+std::uint16_t usb_id_of(std::string_view text) {
   if (text.starts_with("0x")) text.remove_prefix(2);
   std::uint16_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
@@ -63,8 +63,8 @@ UsbIdentity identity_of(const char* name, const config::InstrumentConfig& instru
                        .serial = instrument.serial_number};
   const auto parts = parts_of(instrument.connection, 4);
   if (parts.size() == 4 && (parts[0] == "usb" || parts[0] == "hid")) {
-    identity.vendor_id = hexadecimal(parts[1]);
-    identity.product_id = hexadecimal(parts[2]);
+    identity.vendor_id = usb_id_of(parts[1]);
+    identity.product_id = usb_id_of(parts[2]);
     identity.serial = parts[3];
   }
   if (identity.serial.empty()) identity.serial = name;

@@ -56,6 +56,10 @@ TEST(Architecture, NobodyThrows) {
   EXPECT_THAT(thrown_exceptions(tree()), IsEmpty());
 }
 
+TEST(Architecture, NoCallCanPickAnotherFilesHelper) {
+  EXPECT_THAT(shared_helper_names(tree()), IsEmpty());
+}
+
 TEST(Architecture, NoFileIsTooLongToRead) {
   EXPECT_THAT(long_files(tree()), IsEmpty());
 }

@@ -42,6 +42,12 @@ Violations machine_time_or_chance(const Tree& tree);
 Violations commands_outside_the_engine(const Tree& tree);
 /// Errors are returned as Result; nobody throws.
 Violations thrown_exceptions(const Tree& tree);
+/// Sources of one room, or of one folder of tests/, are compiled as one, and there a call may
+/// silently pick another file's overload. So a function of an anonymous namespace, or of a header
+/// of tests/, whose first parameter is of a standard or fundamental type, or which has none, shares
+/// its name with no other such function there, nor with one that any room's header declares. A type
+/// of the project tells overloads apart.
+Violations shared_helper_names(const Tree& tree);
 /// No file is longer than kMostLines.
 Violations long_files(const Tree& tree);
 /// Nothing is put off, and no test is switched off.

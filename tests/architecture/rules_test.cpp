@@ -109,6 +109,32 @@ TEST(ThrownExceptions, FindsAThrowAndIgnoresTheWordInText) {
   EXPECT_THAT(thrown_exceptions(tree), ElementsAre(HasSubstr("config/a.cpp:1")));
 }
 
+TEST(SharedHelperNames, FindsTwoOfOneRoomAndThoseOfHeaders) {
+  const std::string text = "namespace a {\nnamespace {\nint text_of(double v) {\n}\n}\n}\n";
+  const Tree tree{file("cli/a.cpp", text),
+                  file("cli/b/c.cpp", text),
+                  file("daemon/a.cpp", text),
+                  file("model/a.cpp", "namespace {\nint digits(\n    const std::string& of);\n}\n"),
+                  file("config/a.hpp", "std::string digits();\n"),
+                  file("tests/cli/a.hpp", "inline int text_of(int v) {\n}\n"),
+                  file("tests/cli/a_test.cpp", text)};
+  EXPECT_THAT(shared_helper_names(tree),
+              ElementsAre(HasSubstr("cli/b/c.cpp and cli/a.cpp both have a function `text_of`"),
+                          HasSubstr("model/a.cpp and config/a.hpp both have a function `digits`"),
+                          HasSubstr("tests/cli/a_test.cpp and tests/cli/a.hpp both have")));
+}
+
+TEST(SharedHelperNames, AcceptsAnOverloadOnATypeOfTheProject) {
+  const Tree tree{
+      file("tests/cli/a_test.cpp", "namespace {\nint text_of(double value) {}\n}\n"),
+      file("tests/cli/b_test.cpp", "namespace {\nint text_of(const Plan& plan) {}\n}\n"),
+      file("tests/model/a_test.cpp", "namespace {\nint text_of(double value) {}\n}\n"),
+      file("cli/a.cpp", "namespace {\nint b;\n}\nint text_of(double value) {}\n"),
+      file("cli/c.cpp", "namespace {\nint text_of() {}\n}\nbool C::text_of() const {}\n"),
+      file("cli/c.hpp", "int text_of(Plan plan);\nstruct C {\n  bool text_of() const;\n};\n")};
+  EXPECT_THAT(shared_helper_names(tree), IsEmpty());
+}
+
 TEST(LongFiles, FindsTheFirstLineTooMany) {
   const Tree tree{file("cli/a.cpp", std::string(kMostLines, '\n')),
                   file("cli/b.cpp", std::string(kMostLines + 1, '\n'))};

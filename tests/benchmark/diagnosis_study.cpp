@@ -35,7 +35,7 @@ struct Options {
   bool baselines = true;
 };
 
-Options parse(int argc, char** argv) {
+Options parse_options(int argc, char** argv) {
   Options out;
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
@@ -137,7 +137,7 @@ std::vector<Record> run(const std::vector<Task>& tasks, const Options& options) 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Options options = parse(argc, argv);
+  const Options options = parse_options(argc, argv);
   std::vector<Record> records;
   for (const std::string& file : options.from) {
     const auto more = read_records(file);

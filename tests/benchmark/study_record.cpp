@@ -25,7 +25,7 @@ Outcome outcome_at(int index) {
   return static_cast<Outcome>(index);
 }
 
-Result<Record> parse(const std::string& line) {
+Result<Record> parse_record(const std::string& line) {
   std::vector<std::string> field;
   std::istringstream in(line);
   for (std::string part; std::getline(in, part, '\t');) field.push_back(part);
@@ -113,7 +113,7 @@ Result<std::vector<Record>> read_records(const std::filesystem::path& file) {
   std::vector<Record> out;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
-    auto record = parse(line);
+    auto record = parse_record(line);
     if (!record) {
       return Error{ErrorCode::kBadInput,
                    fmt::format("{}:{}: {}", file.string(), number, record.error().message)};

@@ -9,57 +9,35 @@
 #include <iostream>
 
 #include "model/compare.hpp"
-#include "tests/model/noise_generator.hpp"
+#include "tests/model/models.hpp"
 
 namespace fogbench::model {
 namespace {
 
-constexpr int kSeeds = 200;
+constexpr int kAlarmSeeds = 200;
 constexpr double kMostPercent = 9.0;
 
-config::ModelFile bias_and_axis() {
-  config::ModelFile model;
-  model.terms.resize(2);
-  model.terms[0].effect = "bias";
-  model.terms[1].effect = "magnetic_linear_z";
-  return model;
-}
-
-Table loops(const NoiseCoefficients& noise, unsigned seed, bool timed) {
-  constexpr int kRows = 75;
-  NoiseGenerator generator(noise, 20.0, 200.0 * kRows, seed);
-  std::vector<double> rate, field, time, error;
-  TextColumn segment{.values = {"coil_z/up", "coil_z/down"}, .index = {}};
-  for (int i = 0; i < kRows; ++i) {
-    const int k = i % 25;
-    const double level = 50.0 * (k <= 6 ? k : k <= 18 ? 12 - k : k - 24);
-    field.push_back(level);
-    segment.index.push_back(k > 6 && k <= 18 ? 1 : 0);
-    rate.push_back(0.5 + 0.25 * level / 100.0 + generator.mean_of(9));
-    generator.next();
-    time.push_back(90.0 + 200.0 * i);
-    error.push_back(noise.angle_random_walk_deg_per_sqrt_h / std::sqrt(0.05));
-  }
+/// The loops without their times and standard errors.
+Table untimed(const Table& loops) {
   Table table;
-  table.set_column("rate_deg_per_h", rate);
-  table.set_column("field_z_ut", field);
-  table.set_segment(segment);
-  if (timed) {
-    table.set_column("time_s", time);
-    table.set_column("duration_s", std::vector<double>(kRows, 180.0));
-    table.set_column("rate_std_error_deg_per_h", error);
+  for (const char* name : {"rate_deg_per_h", "field_z_ut"}) {
+    const auto values = loops.column(name);
+    table.set_column(name, {values.begin(), values.end()});
   }
+  table.set_segment(loops.segment());
   return table;
 }
 
 double alarms_percent(const NoiseCoefficients& noise, bool timed) {
+  const auto model = model_of_effects({"bias", "magnetic_linear_z"});
   int alarms = 0;
-  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-    const auto result = compare(loops(noise, seed, timed), bias_and_axis(), {}, seed);
+  for (unsigned seed = 1; seed <= kAlarmSeeds; ++seed) {
+    const Table loops = noisy_loops(noise, seed, 3, 0.0);
+    const auto result = compare(timed ? loops : untimed(loops), model, {}, seed);
     if (!result) return 100.0;
     alarms += result->p_adequate < 0.05;
   }
-  const double percent = 100.0 * alarms / kSeeds;
+  const double percent = 100.0 * alarms / kAlarmSeeds;
   std::cout << "false alarms " << percent << " %\n";
   return percent;
 }

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "model/region_noise.hpp"
-#include "tests/model/noise_generator.hpp"
+#include "tests/model/models.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -19,34 +19,7 @@ using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
 
-ModelTerm term(const std::string& effect) {
-  ModelTerm out;
-  out.effect = effect;
-  return out;
-}
-
-ModelTerm term(const std::string& effect, double coefficient) {
-  ModelTerm out = term(effect);
-  out.coefficient = coefficient;
-  return out;
-}
-
-ModelFile model_of(std::vector<ModelTerm> terms) {
-  ModelFile out;
-  out.terms = std::move(terms);
-  return out;
-}
-
-// config/data/paper-thermal.csv and config/models/paper-thermal.json: the published table and
-// coefficients.
-Table published_thermal() {
-  Table table;
-  table.set_column("temperature_c", {31, 35, 40, 45, 50, 55});
-  table.set_column("rate_deg_per_h", {0.489, 0.346, 0.498, 0.540, 0.919, 1.564});
-  table.set_column("sigma_deg_per_h", {0.081, 0.051, 0.051, 0.043, 0.043, 0.019});
-  return table;
-}
-
+// config/models/paper-thermal.json: the published coefficients.
 ModelFile published_thermal_model() {
   return model_of({term("bias", 1.197), term("temperature_linear", -0.108),
                    term("temperature_quadratic", 0.004)});
@@ -132,37 +105,10 @@ TEST(Compare, SaysThatDevice2ShrankAsAWhole) {
   EXPECT_THAT(result->sentences, Contains(HasSubstr("leave no range free to differ")));
 }
 
-/// A sweep of one axis in loops, with the given noise; `gap` is added on the way down.
-Table sweep(const NoiseCoefficients& noise, unsigned seed, int loops, double gap) {
-  const int rows = 25 * loops;
-  NoiseGenerator generator(noise, 20.0, 200.0 * rows, seed);
-  std::vector<double> rate, field, time, duration(static_cast<std::size_t>(rows), 180.0), error;
-  TextColumn segment{.values = {"coil_z/up", "coil_z/down"}, .index = {}};
-  for (int i = 0; i < rows; ++i) {
-    const int k = i % 25;
-    const double level = 50.0 * (k <= 6 ? k : k <= 18 ? 12 - k : k - 24);
-    const bool down = k > 6 && k <= 18;
-    field.push_back(level);
-    segment.index.push_back(down ? 1 : 0);
-    rate.push_back(0.5 + 0.25 * level / 100.0 + (down ? gap : 0.0) + generator.mean_of(9));
-    generator.next();
-    time.push_back(90.0 + 200.0 * i);
-    error.push_back(noise.angle_random_walk_deg_per_sqrt_h / std::sqrt(0.05));
-  }
-  Table table;
-  table.set_column("rate_deg_per_h", rate);
-  table.set_column("field_z_ut", field);
-  table.set_column("time_s", time);
-  table.set_column("duration_s", duration);
-  table.set_column("rate_std_error_deg_per_h", error);
-  table.set_segment(segment);
-  return table;
-}
-
 const ModelFile kAxis = model_of({term("bias"), term("magnetic_linear_z")});
 
 TEST(Compare, FindsTheBranchOnWhichTheModelFails) {
-  const auto result = compare(sweep(kNavigation, 3, 3, 0.05), kAxis, {});
+  const auto result = compare(noisy_loops(kNavigation, 3, 3, 0.05), kAxis, {});
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_TRUE(result->fit.coloured);
   EXPECT_LT(result->p_adequate, 0.05);
@@ -175,7 +121,7 @@ TEST(Compare, HoldsGivenCoefficientsAgainstColouredNoise) {
   ModelFile off = kAxis;
   off.terms[0].coefficient = 0.5;
   off.terms[1].coefficient = 0.30;
-  const auto result = compare(sweep(kNavigation, 4, 3, 0.0), off, {.as_is = true});
+  const auto result = compare(noisy_loops(kNavigation, 4, 3, 0.0), off, {.as_is = true});
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_LT(result->p_adequate, 0.01);
   EXPECT_TRUE(std::any_of(result->regions.begin(), result->regions.end(), [](const Region& r) {

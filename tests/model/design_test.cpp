@@ -9,7 +9,7 @@
 namespace fogbench::model {
 namespace {
 
-Table session() {
+Table varied_session() {
   std::vector<double> time, duration, temperature, field, azimuth;
   for (int i = 0; i < 60; ++i) {
     time.push_back(60.0 + 100.0 * i);
@@ -27,7 +27,7 @@ Table session() {
 }
 
 TEST(Design, DerivativesByInnerParametersAgreeWithFiniteDifferences) {
-  const Table table = session();
+  const Table table = varied_session();
   const Signals signals(table, 21.0);
   int checked = 0;
   for (const Effect* effect : catalogue()) {

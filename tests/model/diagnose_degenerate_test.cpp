@@ -12,6 +12,7 @@
 
 #include "model/diagnose/diagnose.hpp"
 #include "model/diagnose/working_table.hpp"
+#include "tests/model/models.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -22,7 +23,7 @@ using Columns = std::map<std::string, std::vector<double>>;
 
 /// A sweep of the field along z, `rows` windows of 180 s: bias, slope, and noise of a fixed pattern
 /// (no two neighbours alike, nothing that an effect looks like).
-Columns sweep(std::size_t rows, double noise = 0.005) {
+Columns patterned_sweep(std::size_t rows, double noise = 0.005) {
   Columns out;
   std::uint32_t state = 12345;
   for (std::size_t i = 0; i < rows; ++i) {
@@ -40,29 +41,19 @@ Columns sweep(std::size_t rows, double noise = 0.005) {
   return out;
 }
 
-Table table_of(const Columns& columns) {
+Table as_table(const Columns& columns) {
   Table out;
   for (const auto& [name, values] : columns) out.set_column(name, values);
   return out;
 }
 
-config::ModelFile model_of(const std::vector<std::string>& effects) {
-  config::ModelFile out;
-  out.name = "test";
-  for (const std::string& id : effects) {
-    out.terms.push_back({});
-    out.terms.back().effect = id;
-  }
-  return out;
-}
-
 const config::ModelFile& line() {
-  static const config::ModelFile kLine = model_of({"bias", "magnetic_linear_z"});
+  static const config::ModelFile kLine = model_of_effects({"bias", "magnetic_linear_z"});
   return kLine;
 }
 
 Result<Diagnosis> diagnosed(const Columns& columns, const config::ModelFile& model = line()) {
-  return diagnose(table_of(columns), model, {});
+  return diagnose(as_table(columns), model, {});
 }
 
 void expect_adequate(const Result<Diagnosis>& result) {
@@ -89,30 +80,30 @@ std::string refusal(const Diagnosis& d, const std::string& effect) {
 
 TEST(DiagnoseDegenerate, TooFewRowsAreSaidToTellNothing) {
   for (const std::size_t rows : {2u, 3u, 6u}) {
-    const auto result = diagnosed(sweep(rows));
+    const auto result = diagnosed(patterned_sweep(rows));
     expect_adequate(result);
     EXPECT_FALSE(result->judged);
     EXPECT_EQ(result->sentences.front().rfind("Cannot tell whether anything is missing", 0), 0U)
         << result->sentences.front();
   }
-  expect_refused(diagnosed(sweep(1)), "found 1 usable rows, expected at least 2");
+  expect_refused(diagnosed(patterned_sweep(1)), "found 1 usable rows, expected at least 2");
 }
 
 TEST(DiagnoseDegenerate, TwelveRowsAreJudged) {
-  const auto result = diagnosed(sweep(12));
+  const auto result = diagnosed(patterned_sweep(12));
   expect_adequate(result);
   EXPECT_TRUE(result->judged);
 }
 
 TEST(DiagnoseDegenerate, PerfectFitMissesNothing) {
-  Columns exact = sweep(24, 0.0);
+  Columns exact = patterned_sweep(24, 0.0);
   expect_adequate(diagnosed(exact));
   exact.erase("rate_std_error_deg_per_h");
   expect_adequate(diagnosed(exact));
 }
 
 TEST(DiagnoseDegenerate, PerfectFitButForOneEffectNamesIt) {
-  Columns exact = sweep(24, 0.0);
+  Columns exact = patterned_sweep(24, 0.0);
   for (std::size_t i = 0; i < 24; ++i) {
     exact["rate_deg_per_h"][i] += 1e-5 * std::pow(exact["field_z_ut"][i], 2);
   }
@@ -124,29 +115,29 @@ TEST(DiagnoseDegenerate, PerfectFitButForOneEffectNamesIt) {
 }
 
 TEST(DiagnoseDegenerate, ObservableThatStandsStill) {
-  Columns still = sweep(24);
+  Columns still = patterned_sweep(24);
   still["rate_deg_per_h"].assign(24, 0.7);
   expect_adequate(diagnosed(still));
 }
 
 TEST(DiagnoseDegenerate, ConstantColumnsAreNotTestableAndSaid) {
-  const auto result = diagnosed(sweep(24));
+  const auto result = diagnosed(patterned_sweep(24));
   expect_adequate(result);
   EXPECT_NE(refusal(*result, "temperature_linear"), "");
   EXPECT_NE(refusal(*result, "magnetic_linear_x"), "");
 }
 
 TEST(DiagnoseDegenerate, OneSetPointOnly) {
-  Columns one = sweep(24);
+  Columns one = patterned_sweep(24);
   for (std::size_t i = 0; i < 24; ++i) {
     one["rate_deg_per_h"][i] += 0.0025 * (one["field_z_ut"][i] - 100.0);
   }
   one["field_z_ut"].assign(24, 100.0);
-  expect_adequate(diagnosed(one, model_of({"bias"})));
+  expect_adequate(diagnosed(one, model_of_effects({"bias"})));
 }
 
 TEST(DiagnoseDegenerate, ColumnsOfNothing) {
-  Columns columns = sweep(24);
+  Columns columns = patterned_sweep(24);
   columns["temperature_c"].assign(24, kNan);
   const auto result = diagnosed(columns);
   expect_adequate(result);
@@ -156,7 +147,7 @@ TEST(DiagnoseDegenerate, ColumnsOfNothing) {
 }
 
 TEST(DiagnoseDegenerate, GapsAreLeftOut) {
-  Columns columns = sweep(48);
+  Columns columns = patterned_sweep(48);
   for (std::size_t i = 0; i < 48; i += 5) columns["rate_deg_per_h"][i] = kNan;
   const auto result = diagnosed(columns);
   expect_adequate(result);
@@ -165,7 +156,7 @@ TEST(DiagnoseDegenerate, GapsAreLeftOut) {
 
 TEST(DiagnoseDegenerate, RowsWrittenTwiceCountOnce) {
   Columns twice;
-  for (const auto& [name, values] : sweep(24)) {
+  for (const auto& [name, values] : patterned_sweep(24)) {
     for (const double v : values) twice[name].insert(twice[name].end(), {v, v});
   }
   const auto result = diagnosed(twice);
@@ -174,7 +165,7 @@ TEST(DiagnoseDegenerate, RowsWrittenTwiceCountOnce) {
 }
 
 TEST(DiagnoseDegenerate, TimeThatStandsStillIsOfNoUse) {
-  Columns columns = sweep(24);
+  Columns columns = patterned_sweep(24);
   columns["time_s"].assign(24, 5.0);
   const auto result = diagnosed(columns);
   expect_adequate(result);
@@ -182,9 +173,9 @@ TEST(DiagnoseDegenerate, TimeThatStandsStillIsOfNoUse) {
 }
 
 TEST(DiagnoseDegenerate, WindowsThatOverlapAreCutToTheStepBetweenThem) {
-  Columns columns = sweep(24);
+  Columns columns = patterned_sweep(24);
   columns["duration_s"].assign(24, 1e30);
-  const auto table = WorkingTable::make(table_of(columns), line(), nullptr);
+  const auto table = WorkingTable::make(as_table(columns), line(), nullptr);
   ASSERT_TRUE(table);
   EXPECT_EQ(table->windows().duration_s.minCoeff(), 200.0);
   EXPECT_EQ(table->windows().duration_s.maxCoeff(), 200.0);
@@ -192,7 +183,7 @@ TEST(DiagnoseDegenerate, WindowsThatOverlapAreCutToTheStepBetweenThem) {
 
 TEST(DiagnoseDegenerate, NumbersThatNoInstrumentGivesAreNamed) {
   const auto with = [](const std::string& name, double value) {
-    Columns columns = sweep(24);
+    Columns columns = patterned_sweep(24);
     columns[name][7] = value;
     return diagnosed(columns);
   };
@@ -203,21 +194,21 @@ TEST(DiagnoseDegenerate, NumbersThatNoInstrumentGivesAreNamed) {
 }
 
 TEST(DiagnoseDegenerate, StandardErrorsOfZeroTellNothing) {
-  Columns columns = sweep(24);
+  Columns columns = patterned_sweep(24);
   columns["rate_std_error_deg_per_h"].assign(24, 0.0);
   expect_adequate(diagnosed(columns));
 }
 
 TEST(DiagnoseDegenerate, StaticRecordWithoutTheObservableIsRefused) {
-  const Table bench = table_of(sweep(24));
-  const Table other = table_of({{"humidity", {1.0, 2.0}}});
+  const Table bench = as_table(patterned_sweep(24));
+  const Table other = as_table({{"humidity", {1.0, 2.0}}});
   expect_refused(diagnose(bench, line(), {.quiet = &other}), "rate_deg_per_h");
   const Table empty;
   expect_refused(diagnose(bench, line(), {.quiet = &empty}), "rate_deg_per_h");
 }
 
 TEST(DiagnoseDegenerate, UsersCandidateTakesPart) {
-  Columns columns = sweep(48);
+  Columns columns = patterned_sweep(48);
   for (std::size_t i = 0; i < 48; ++i) {
     columns["rate_deg_per_h"][i] += 0.1 * std::sin(columns["field_z_ut"][i] / 20.0);
   }
@@ -225,7 +216,7 @@ TEST(DiagnoseDegenerate, UsersCandidateTakesPart) {
   wave.effect = "my_wave";
   wave.expression = "sin(field_z_ut / 20)";
   wave.unit = "deg/h";
-  const auto result = diagnose(table_of(columns), line(), {.candidates = {wave}});
+  const auto result = diagnose(as_table(columns), line(), {.candidates = {wave}});
   ASSERT_TRUE(result);
   ASSERT_FALSE(result->missing.empty());
   EXPECT_EQ(result->missing[0].found.effect, "my_wave");
@@ -246,10 +237,10 @@ Columns two_tests(const std::vector<double>& rates) {
 }
 
 Result<Diagnosis> of_two_tests(const std::vector<double>& rates) {
-  Table table = table_of(two_tests(rates));
+  Table table = as_table(two_tests(rates));
   table.set_run({{"1", "2"}, {0, 0, 0, 1, 1, 1}});
-  return diagnose(table, model_of({"magnetic_linear_x", "magnetic_linear_y", "magnetic_linear_z"}),
-                  {});
+  return diagnose(
+      table, model_of_effects({"magnetic_linear_x", "magnetic_linear_y", "magnetic_linear_z"}), {});
 }
 
 TEST(DiagnoseDegenerate, OneScaleThatChangedBetweenTheTests) {
@@ -279,7 +270,7 @@ TEST(DiagnoseDegenerate, ModelWithHeldCoefficients) {
   for (config::ModelTerm& term : held.terms) term.fixed = true;
   held.terms[0].coefficient = 0.7;
   held.terms[1].coefficient = -0.25;
-  expect_adequate(diagnosed(sweep(24), held));
+  expect_adequate(diagnosed(patterned_sweep(24), held));
 }
 
 }  // namespace

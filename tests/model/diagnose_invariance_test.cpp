@@ -25,14 +25,14 @@ tests::Trial trial() {
       {.part = "invariance", .hidden = {"magnetic_hysteresis_z"}, .s = 16.0}, 1);
 }
 
-Diagnosis diagnosed(const Table& table, const DiagnoseOptions& options = {}) {
+Diagnosis diagnosed_trial(const Table& table, const DiagnoseOptions& options = {}) {
   const auto result = diagnose(table, trial().model, options);
   EXPECT_TRUE(result) << (result ? "" : result.error().message);
   return result ? *result : Diagnosis{};
 }
 
 const Diagnosis& reference() {
-  static const Diagnosis kReference = diagnosed(trial().table);
+  static const Diagnosis kReference = diagnosed_trial(trial().table);
   return kReference;
 }
 
@@ -94,7 +94,7 @@ TEST(DiagnoseInvariance, TheEffectIsFoundAtAll) {
 }
 
 TEST(DiagnoseInvariance, RowsInAnyOrder) {
-  expect_same(reference(), diagnosed(shuffled(trial().table)));
+  expect_same(reference(), diagnosed_trial(shuffled(trial().table)));
 }
 
 TEST(DiagnoseInvariance, RunsInAnyOrder) {
@@ -102,20 +102,20 @@ TEST(DiagnoseInvariance, RunsInAnyOrder) {
   Table forth = in_run(table, "1"), back = in_run(table, "2");
   forth.append(in_run(table, "2"));
   back.append(in_run(table, "1"));
-  expect_same(diagnosed(forth), diagnosed(shuffled(back)));
+  expect_same(diagnosed_trial(forth), diagnosed_trial(shuffled(back)));
 }
 
 TEST(DiagnoseInvariance, ConstantThatTheBiasTakesUp) {
   Table table = trial().table;
   change(table, "rate_deg_per_h", [](double v) { return v + 15.041; });
-  expect_same(reference(), diagnosed(table));
+  expect_same(reference(), diagnosed_trial(table));
 }
 
 TEST(DiagnoseInvariance, ScaleOfTheObservable) {
   Table table = trial().table;
   change(table, "rate_deg_per_h", [](double v) { return 10.0 * v; });
   change(table, "rate_std_error_deg_per_h", [](double v) { return 10.0 * v; });
-  expect_same(reference(), diagnosed(table), 10.0);
+  expect_same(reference(), diagnosed_trial(table), 10.0);
 }
 
 TEST(DiagnoseInvariance, ColumnsThatNoEffectKnows) {
@@ -123,7 +123,7 @@ TEST(DiagnoseInvariance, ColumnsThatNoEffectKnows) {
   std::vector<double> pressure(table.rows());
   std::iota(pressure.begin(), pressure.end(), 990.0);
   table.set_column("pressure_hpa", std::move(pressure));
-  expect_same(reference(), diagnosed(table));
+  expect_same(reference(), diagnosed_trial(table));
 }
 
 TEST(DiagnoseInvariance, WorkersInTurnOnOneProcessorToTheLastBit) {
@@ -134,7 +134,7 @@ TEST(DiagnoseInvariance, WorkersInTurnOnOneProcessorToTheLastBit) {
     if (CPU_ISSET(cpu, &all)) CPU_SET(cpu, &one);
   }
   ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
-  const Diagnosis alone = diagnosed(trial().table);
+  const Diagnosis alone = diagnosed_trial(trial().table);
   ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
   expect_same(reference(), alone);
   EXPECT_EQ(reference().missing[0].found.p_value, alone.missing[0].found.p_value);
@@ -142,7 +142,7 @@ TEST(DiagnoseInvariance, WorkersInTurnOnOneProcessorToTheLastBit) {
 }
 
 TEST(DiagnoseInvariance, SeedOfAClearCase) {
-  const Diagnosis other = diagnosed(trial().table, {.seed = 7});
+  const Diagnosis other = diagnosed_trial(trial().table, {.seed = 7});
   EXPECT_EQ(other.verdict, reference().verdict);
   ASSERT_EQ(other.missing.size(), 1U);
   EXPECT_EQ(other.missing[0].found.effect, reference().missing[0].found.effect);

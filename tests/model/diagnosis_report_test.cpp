@@ -12,6 +12,7 @@
 
 #include "model/report_plots.hpp"
 #include "model/svg_plot.hpp"
+#include "tests/model/models.hpp"
 #include "tests/support/markup.hpp"
 
 namespace fogbench::model {
@@ -51,13 +52,6 @@ Table swept_table() {
   return table;
 }
 
-config::ModelFile model_of(const std::vector<std::string>& effects) {
-  config::ModelFile model;
-  model.name = "fields & <nothing else>";
-  for (const std::string& effect : effects) model.terms.push_back({.effect = effect});
-  return model;
-}
-
 /// What a diagnosis of the swept table says, filled by hand but for the fits.
 Diagnosis hysteresis_found(const config::ModelFile& model) {
   Diagnosis d;
@@ -66,7 +60,8 @@ Diagnosis hysteresis_found(const config::ModelFile& model) {
   d.table = swept_table();
   d.rows_per_bin = 12;
   auto before = compare(d.table, model, {});
-  auto after = fit(d.table, model_of({"bias", "magnetic_linear_z", "magnetic_hysteresis_z"}), {});
+  auto after =
+      fit(d.table, model_of_effects({"bias", "magnetic_linear_z", "magnetic_hysteresis_z"}), {});
   EXPECT_TRUE(before) << before.error().message;
   EXPECT_TRUE(after) << after.error().message;
   if (!before || !after) return d;
@@ -116,10 +111,11 @@ Diagnosis hysteresis_found(const config::ModelFile& model) {
 class DiagnosisHtml : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    model_ = new config::ModelFile(model_of({"bias", "magnetic_linear_z"}));
+    model_ = new config::ModelFile(model_of_effects({"bias", "magnetic_linear_z"}));
+    model_->name = "fields & <nothing else>";
     diagnosis_ = new Diagnosis(hysteresis_found(*model_));
     page_ = new std::string(diagnosis_html(*diagnosis_, *model_, "a & <b>.csv"));
-    // To look at it: DIAGNOSIS_PAGE=/tmp/page.html build/.../model_report_test
+    // To look at it: DIAGNOSIS_PAGE=/tmp/page.html build/.../model_test
     if (const char* file = std::getenv("DIAGNOSIS_PAGE")) std::ofstream(file) << *page_;
   }
   static void TearDownTestSuite() {

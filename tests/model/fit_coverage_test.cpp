@@ -7,6 +7,7 @@
 #include <random>
 
 #include "model/fit.hpp"
+#include "tests/model/models.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -14,15 +15,8 @@ namespace {
 constexpr int kSessions = 1000;
 constexpr unsigned kFirstSeed = 20'000;
 
-config::ModelTerm term(const std::string& effect, double coefficient) {
-  config::ModelTerm result;
-  result.effect = effect;
-  result.coefficient = coefficient;
-  return result;
-}
-
 /// An hour of one-minute averages after power-on, at three temperatures.
-Table session() {
+Table heated_session() {
   std::vector<double> time, duration, temperature;
   for (int i = 0; i < 60; ++i) {
     time.push_back(30.0 + 60.0 * i);
@@ -46,7 +40,7 @@ TEST(FitCoverage, ExpandedUncertaintyHoldsTheTruthAsOftenAsItSays) {
     t.coefficient.reset();
     t.parameters.clear();
   }
-  Table table = session();
+  Table table = heated_session();
   const auto clean = predict(table, truth);
   ASSERT_TRUE(clean) << clean.error().message;
   std::vector<int> held(expected.size(), 0);

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
+
+#include "tests/model/models.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -15,34 +18,12 @@ using testing::HasSubstr;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-ModelTerm term(std::string effect) {
-  ModelTerm result;
-  result.effect = std::move(effect);
-  return result;
-}
-
 ModelTerm formula(std::string name, std::string expression,
                   std::map<std::string, double> parameters = {}) {
   ModelTerm result = term(std::move(name));
   result.expression = std::move(expression);
   result.parameters = std::move(parameters);
   return result;
-}
-
-ModelFile model_of(std::vector<ModelTerm> terms, std::string observable = "rate_deg_per_h") {
-  ModelFile model;
-  model.observable = std::move(observable);
-  model.terms = std::move(terms);
-  return model;
-}
-
-/// The published thermal table: set points, deviations from the unheated baseline, sigmas.
-Table published_thermal() {
-  Table table;
-  table.set_column("temperature_c", {31, 35, 40, 45, 50, 55});
-  table.set_column("rate_deg_per_h", {0.489, 0.346, 0.498, 0.540, 0.919, 1.564});
-  table.set_column("sigma_deg_per_h", {0.081, 0.051, 0.051, 0.043, 0.043, 0.019});
-  return table;
 }
 
 const Estimate& estimate(const FitResult& result, const std::string& name) {

@@ -4,19 +4,12 @@
 #include <cmath>
 
 #include "model/fit.hpp"
+#include "tests/model/models.hpp"
 
 namespace fogbench::model {
 namespace {
 
 using testing::HasSubstr;
-
-config::ModelFile bias_and(const std::string& effect) {
-  config::ModelFile model;
-  model.terms.resize(2);
-  model.terms[0].effect = "bias";
-  model.terms[1].effect = effect;
-  return model;
-}
 
 TEST(FitWarnings, WarnsOfACoefficientThatTheDataHardlyExcite) {
   Table table;
@@ -27,7 +20,7 @@ TEST(FitWarnings, WarnsOfACoefficientThatTheDataHardlyExcite) {
   }
   table.set_column("field_x_ut", field);
   table.set_column("rate_deg_per_h", rate);
-  const config::ModelFile model = bias_and("magnetic_linear_x");
+  const config::ModelFile model = model_of_effects({"bias", "magnetic_linear_x"});
   const auto faint = fit(table, model, {});
   ASSERT_TRUE(faint);
   EXPECT_THAT(faint->warnings,
@@ -46,7 +39,7 @@ TEST(FitWarnings, SaysThatAnExactFitLeavesNothingToTellUncertaintiesFrom) {
   Table table;
   table.set_column("temperature_c", {21, 31, 41, 51, 61});
   table.set_column("rate_deg_per_h", {1, 2, 3, 4, 5});
-  const auto result = fit(table, bias_and("temperature_linear"), {});
+  const auto result = fit(table, model_of_effects({"bias", "temperature_linear"}), {});
   ASSERT_TRUE(result);
   EXPECT_THAT(result->warnings, testing::Contains(HasSubstr("meets every row exactly")));
 }

@@ -15,16 +15,16 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kSeeds = 500;
+constexpr int kCoverageSeeds = 500;
 
-struct Design {
+struct Regression {
   Windows windows;
   MatrixXd x;
 };
 
 /// Three loops of 25 points of 180 s: 0, +300, -300, 0 uT on one axis after another.
-Design magnetic_design() {
-  Design design{regular_windows(75, 180.0, 200.0), MatrixXd::Zero(75, 4)};
+Regression magnetic_design() {
+  Regression design{regular_windows(75, 180.0, 200.0), MatrixXd::Zero(75, 4)};
   for (int i = 0; i < 75; ++i) {
     const int k = i % 25;
     const double level = k <= 6 ? k : k <= 18 ? 12 - k : k - 24;
@@ -35,8 +35,8 @@ Design magnetic_design() {
 }
 
 /// Temperature from 31 to 55 degC in steps, 60 s averages: bias, t, t^2 and dT/dt.
-Design thermal_design(int rows) {
-  Design design{regular_windows(rows, 60.0, 240.0), MatrixXd::Zero(rows, 4)};
+Regression thermal_design(int rows) {
+  Regression design{regular_windows(rows, 60.0, 240.0), MatrixXd::Zero(rows, 4)};
   for (int i = 0; i < rows; ++i) {
     const double place = 6.0 * i / rows;
     const double since = place - std::floor(place);
@@ -48,7 +48,7 @@ Design thermal_design(int rows) {
 
 /// Share of intervals that hold the truth, in per cent, over all coefficients but the bias (which
 /// no interval can hold: the flicker below the record's frequencies is part of it).
-double coverage(Design design, const NoiseCoefficients& noise, bool anchored, double step_s) {
+double coverage(Regression design, const NoiseCoefficients& noise, bool anchored, double step_s) {
   const Windows& w = design.windows;
   const double period = w.centre_s[1] - w.centre_s[0];
   const int steps = static_cast<int>(w.duration_s[0] / step_s);
@@ -59,7 +59,7 @@ double coverage(Design design, const NoiseCoefficients& noise, bool anchored, do
   }
   const auto shapes = NoiseShapes::make(design.windows);
   int held = 0, all = 0;
-  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+  for (unsigned seed = 1; seed <= kCoverageSeeds; ++seed) {
     NoiseGenerator generator(noise, step_s, period * static_cast<double>(w.rows()), seed);
     VectorXd y(w.rows());
     for (double& value : y) {
@@ -82,7 +82,7 @@ constexpr NoiseCoefficients kWhite{0.005, 0.0, 0.0, 0.0};
 constexpr NoiseCoefficients kWalk{0.001, 0.0, 0.01, 0.0};
 constexpr NoiseCoefficients kFlicker{0.001, 0.02, 0.0, 0.0};
 
-struct Case {
+struct CoverageCase {
   const char* name;
   NoiseCoefficients noise;
   double least_percent, most_percent;
@@ -97,13 +97,13 @@ struct Case {
 //   flicker      97.1, 96.5    96.1, 96.0    97.6, 97.6    98.3, 98.0
 // Few rows cannot rule out slow noise, so where there is little of it the intervals are too wide;
 // where there is nothing else, a little too narrow.
-const Case kCases[] = {{"Navigation", kNavigation, 93.0, 99.3},
-                       {"Tactical", kTactical, 93.0, 99.3},
-                       {"White", kWhite, 95.0, 99.9},
-                       {"Walk", kWalk, 90.0, 99.3},
-                       {"Flicker", kFlicker, 94.0, 99.3}};
+const CoverageCase kCoverageCases[] = {{"Navigation", kNavigation, 93.0, 99.3},
+                                       {"Tactical", kTactical, 93.0, 99.3},
+                                       {"White", kWhite, 95.0, 99.9},
+                                       {"Walk", kWalk, 90.0, 99.3},
+                                       {"Flicker", kFlicker, 94.0, 99.3}};
 
-class GlsCoverage : public testing::TestWithParam<Case> {};
+class GlsCoverage : public testing::TestWithParam<CoverageCase> {};
 
 TEST_P(GlsCoverage, OfSweepsHoldsWhatTheIntervalsPromise) {
   const bool graded = GetParam().noise.rate_random_walk_deg_per_h_per_sqrt_h > 0.0 &&
@@ -125,7 +125,7 @@ TEST_P(GlsCoverage, OfTemperatureStepsHoldsWhatTheIntervalsPromise) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Noise, GlsCoverage, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Noise, GlsCoverage, testing::ValuesIn(kCoverageCases),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace fogbench::model {
 namespace {
 
-constexpr Eigen::Index kRows = 80;
+constexpr Eigen::Index kMinutes = 80;
 constexpr NoiseCoefficients kNoise{.angle_random_walk_deg_per_sqrt_h = 0.001,
                                    .bias_instability_deg_per_h = 0.002};
 
@@ -24,7 +24,7 @@ Windows minutes(Eigen::Index rows) {
 Eigen::VectorXd unit_normals(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  return Eigen::VectorXd::NullaryExpr(kRows, [&] { return normal(random); });
+  return Eigen::VectorXd::NullaryExpr(kMinutes, [&] { return normal(random); });
 }
 
 Eigen::MatrixXd joined(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
@@ -34,12 +34,12 @@ Eigen::MatrixXd joined(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
 }
 
 TEST(HeldoutVotes, EveryPartIsPredictedBetterWithWhatIsThere) {
-  const Eigen::MatrixXd bias = Eigen::MatrixXd::Ones(kRows, 1);
-  const Eigen::VectorXd wave = Eigen::VectorXd::LinSpaced(kRows, 0.0, 60.0).array().sin();
-  const auto whitener = make_whitener(minutes(kRows), kNoise);
+  const Eigen::MatrixXd bias = Eigen::MatrixXd::Ones(kMinutes, 1);
+  const Eigen::VectorXd wave = Eigen::VectorXd::LinSpaced(kMinutes, 0.0, 60.0).array().sin();
+  const auto whitener = make_whitener(minutes(kMinutes), kNoise);
   const Eigen::VectorXd noise = (*whitener)->colour(unit_normals(1));
-  const auto votes =
-      heldout_votes(minutes(kRows), kNoise, joined(bias, wave), {bias}, 0.1 * wave + noise, kRows);
+  const auto votes = heldout_votes(minutes(kMinutes), kNoise, joined(bias, wave), {bias},
+                                   0.1 * wave + noise, kMinutes);
   ASSERT_EQ(votes.size(), 1U);
   EXPECT_EQ(votes[0].folds, 8);
   EXPECT_EQ(votes[0].better, 8);
@@ -49,14 +49,14 @@ TEST(HeldoutVotes, EveryPartIsPredictedBetterWithWhatIsThere) {
 // A useless column costs about one unit of the weighted sum of squares: 200 tables, the mean gain
 // is known to 0.15.
 TEST(HeldoutVotes, AUselessColumnCosts) {
-  const Eigen::MatrixXd bias = Eigen::MatrixXd::Ones(kRows, 1);
-  const auto whitener = make_whitener(minutes(kRows), kNoise);
+  const Eigen::MatrixXd bias = Eigen::MatrixXd::Ones(kMinutes, 1);
+  const auto whitener = make_whitener(minutes(kMinutes), kNoise);
   double gain = 0.0;
   constexpr int kTables = 200;
   for (std::uint64_t table = 0; table < kTables; ++table) {
     const Eigen::VectorXd noise = (*whitener)->colour(unit_normals(1000 + table));
-    gain += heldout_votes(minutes(kRows), kNoise, joined(bias, unit_normals(5000 + table)), {bias},
-                          noise, kRows)
+    gain += heldout_votes(minutes(kMinutes), kNoise, joined(bias, unit_normals(5000 + table)),
+                          {bias}, noise, kMinutes)
                 .at(0)
                 .gain /
             kTables;
@@ -66,29 +66,29 @@ TEST(HeldoutVotes, AUselessColumnCosts) {
 }
 
 TEST(HeldoutVotes, WhatOneBlockAloneShowsHasNoVoteThere) {
-  const Eigen::MatrixXd bias = Eigen::MatrixXd::Ones(kRows, 1);
-  Eigen::VectorXd pulse = Eigen::VectorXd::Zero(kRows);
+  const Eigen::MatrixXd bias = Eigen::MatrixXd::Ones(kMinutes, 1);
+  Eigen::VectorXd pulse = Eigen::VectorXd::Zero(kMinutes);
   pulse[41] = 1.0;
   const auto votes =
-      heldout_votes(minutes(kRows), kNoise, joined(bias, pulse), {bias}, pulse, kRows);
+      heldout_votes(minutes(kMinutes), kNoise, joined(bias, pulse), {bias}, pulse, kMinutes);
   EXPECT_EQ(votes.at(0).folds, 7);
 }
 
 TEST(HeldoutVotes, AStaticRecordIsNeverLeftOut) {
   // The level is known from the static record alone: were it left out, some fold would have no
   // vote.
-  Eigen::VectorXd level = Eigen::VectorXd::Zero(kRows);
+  Eigen::VectorXd level = Eigen::VectorXd::Zero(kMinutes);
   level.tail(20).setOnes();
-  const auto votes = heldout_votes(minutes(kRows), kNoise, level, {Eigen::MatrixXd(kRows, 0)},
-                                   unit_normals(7), kRows - 20);
+  const auto votes = heldout_votes(minutes(kMinutes), kNoise, level, {Eigen::MatrixXd(kMinutes, 0)},
+                                   unit_normals(7), kMinutes - 20);
   EXPECT_EQ(votes.at(0).folds, 8);
   EXPECT_EQ(votes.at(0).better, 0);
   EXPECT_EQ(votes.at(0).gain, 0.0);
 }
 
 TEST(HeldoutVotes, WithoutKnownNoiseThereIsNone) {
-  EXPECT_TRUE(heldout_votes(minutes(kRows), {}, Eigen::MatrixXd::Ones(kRows, 1),
-                            {Eigen::MatrixXd(kRows, 0)}, unit_normals(9), kRows)
+  EXPECT_TRUE(heldout_votes(minutes(kMinutes), {}, Eigen::MatrixXd::Ones(kMinutes, 1),
+                            {Eigen::MatrixXd(kMinutes, 0)}, unit_normals(9), kMinutes)
                   .empty());
 }
 

@@ -8,7 +8,7 @@
 namespace fogbench::model {
 namespace {
 
-Table table_of(const std::string& variable, const std::vector<double>& values) {
+Table timed_table(const std::string& variable, const std::vector<double>& values) {
   Table table;
   std::vector<double> time;
   for (std::size_t i = 0; i < values.size(); ++i) time.push_back(static_cast<double>(i));
@@ -22,8 +22,8 @@ std::vector<Branch> branches(const Table& table, const std::string& variable) {
 }
 
 TEST(BranchesOf, FollowASweepUpAndDownStopByStop) {
-  const Table table =
-      table_of("field_z_ut", {0, 0, 100, 200, 300, 200, 100, 0, -100, -200, -300, -200, -100, 0});
+  const Table table = timed_table(
+      "field_z_ut", {0, 0, 100, 200, 300, 200, 100, 0, -100, -200, -300, -200, -100, 0});
   const auto found = branches(table, "field_z_ut");
   ASSERT_EQ(found.size(), 3u);
   EXPECT_TRUE(found[0].rising);
@@ -42,7 +42,7 @@ TEST(BranchesOf, GatherANoisyRampIntoFewStops) {
   std::vector<double> values;
   for (int i = 0; i < 4000; ++i)
     values.push_back(25.0 + 0.015 * std::min(i, 4000 - i) + noise(random));
-  const auto found = branches(table_of("temperature_c", values), "temperature_c");
+  const auto found = branches(timed_table("temperature_c", values), "temperature_c");
   ASSERT_EQ(found.size(), 2u);
   EXPECT_TRUE(found[0].rising);
   EXPECT_FALSE(found[1].rising);
@@ -62,13 +62,14 @@ TEST(BranchesOf, SeeNoLoopInOneDirectionInNoiseOrAtRest) {
     rising.push_back(0.1 * i);
     scatter.push_back(noise(random));
   }
-  EXPECT_THAT(branches(table_of("temperature_c", rising), "temperature_c"), testing::IsEmpty());
-  EXPECT_THAT(branches(table_of("temperature_c", scatter), "temperature_c"), testing::IsEmpty());
-  EXPECT_THAT(branches(table_of("temperature_c", rest), "temperature_c"), testing::IsEmpty());
+  EXPECT_THAT(branches(timed_table("temperature_c", rising), "temperature_c"), testing::IsEmpty());
+  EXPECT_THAT(branches(timed_table("temperature_c", scatter), "temperature_c"), testing::IsEmpty());
+  EXPECT_THAT(branches(timed_table("temperature_c", rest), "temperature_c"), testing::IsEmpty());
 }
 
 TEST(BranchesOf, KeepTheSweepsOfOtherAxesOut) {
-  Table table = table_of("field_z_ut", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -300, 0, 300, 300, 0, -300});
+  Table table =
+      timed_table("field_z_ut", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -300, 0, 300, 300, 0, -300});
   TextColumn segment{{"coil_x/up", "coil_z/up", "coil_z/down"},
                      {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2}};
   table.set_segment(segment);

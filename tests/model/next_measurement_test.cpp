@@ -12,6 +12,7 @@
 #include "model/diagnose/bench_schedule.hpp"
 #include "model/diagnose/separation.hpp"
 #include "model/effect.hpp"
+#include "tests/model/models.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -28,12 +29,9 @@ using testing::Not;
 using testing::SizeIs;
 using testing::UnorderedElementsAre;
 
-constexpr NoiseCoefficients kNavigation{.angle_random_walk_deg_per_sqrt_h = 0.001,
-                                        .bias_instability_deg_per_h = 0.003,
-                                        .rate_random_walk_deg_per_h_per_sqrt_h = 0.003};
-
-config::ModelTerm term(std::string effect, std::map<std::string, double> coefficients = {},
-                       std::map<std::string, double> parameters = {}) {
+/// A term that was found: its coefficients by column (one of its own is ""), its inner parameters.
+config::ModelTerm found_term(std::string effect, std::map<std::string, double> coefficients,
+                             std::map<std::string, double> parameters = {}) {
   config::ModelTerm out;
   out.effect = std::move(effect);
   out.parameters = std::move(parameters);
@@ -46,14 +44,14 @@ config::ModelTerm term(std::string effect, std::map<std::string, double> coeffic
 }
 
 /// A measurement, the model that was known, the effect that was found on top of it.
-struct Case {
+struct DiagnosedRun {
   Recorded present;
   std::vector<config::ModelTerm> known;
   config::ModelTerm found;
   double plain = 8.0;  ///< whitened size of the found effect, as when diagnoses are right
 };
 
-config::ModelFile fitted_model(const Case& c) {
+config::ModelFile fitted_model(const DiagnosedRun& c) {
   config::ModelFile model;
   model.terms = c.known;
   model.terms.push_back(c.found);
@@ -76,7 +74,7 @@ config::ModelFile fitted_model(const Case& c) {
   return model;
 }
 
-std::vector<NextMeasurement> next_for(const Case& c, const std::vector<std::string>& set) {
+std::vector<NextMeasurement> next_for(const DiagnosedRun& c, const std::vector<std::string>& set) {
   return next_measurements({c.present.table, fitted_model(c), kNavigation, {set}, {}});
 }
 
@@ -147,9 +145,11 @@ std::vector<config::ModelTerm> thermal() {
 }
 
 TEST(NextMeasurement, FurtherAzimuthsTellTheEarthFromAStep) {
-  const Case earth{
-      rotation(), {term("bias")}, term("earth_rate_projection", {{"cos", -0.01}, {"sin", 0.002}})};
-  const Case step{rotation(), {term("bias")}, term("bias_step", {{"", 0.01}}, {{"t0", 3330.0}})};
+  const DiagnosedRun earth{rotation(),
+                           {term("bias")},
+                           found_term("earth_rate_projection", {{"cos", -0.01}, {"sin", 0.002}})};
+  const DiagnosedRun step{
+      rotation(), {term("bias")}, found_term("bias_step", {{"", 0.01}}, {{"t0", 3330.0}})};
   for (const auto& next : {next_for(earth, {"earth_rate_projection", "bias_step"}),
                            next_for(step, {"bias_step", "earth_rate_projection"})}) {
     ASSERT_THAT(next, Not(IsEmpty()));
@@ -161,8 +161,10 @@ TEST(NextMeasurement, FurtherAzimuthsTellTheEarthFromAStep) {
 }
 
 TEST(NextMeasurement, LongHoldsTellCoilHeatingFromAQuadraticTerm) {
-  const Case heating{sweep_z(), magnetic(), term("coil_heating", {{"", 0.003}}, {{"tau", 400.0}})};
-  const Case quadratic{sweep_z(), magnetic(), term("magnetic_quadratic_z", {{"", 0.002}})};
+  const DiagnosedRun heating{sweep_z(), magnetic(),
+                             found_term("coil_heating", {{"", 0.003}}, {{"tau", 400.0}})};
+  const DiagnosedRun quadratic{sweep_z(), magnetic(),
+                               found_term("magnetic_quadratic_z", {{"", 0.002}})};
   for (const auto& next : {next_for(heating, {"coil_heating", "magnetic_quadratic_z"}),
                            next_for(quadratic, {"magnetic_quadratic_z", "coil_heating"})}) {
     ASSERT_THAT(next, Not(IsEmpty()));
@@ -172,7 +174,7 @@ TEST(NextMeasurement, LongHoldsTellCoilHeatingFromAQuadraticTerm) {
 }
 
 TEST(NextMeasurement, BoostAgainstNormalHeatingTellsTheGradientFromTheRate) {
-  const Case gradient{ramp(), thermal(), term("temperature_gradient", {{"", 0.05}})};
+  const DiagnosedRun gradient{ramp(), thermal(), found_term("temperature_gradient", {{"", 0.05}})};
   const auto next = next_for(gradient, {"temperature_gradient", "temperature_rate"});
   ASSERT_THAT(next, Not(IsEmpty()));
   EXPECT_THAT(next.front(), action("the boost heaters and the normal one"));
@@ -180,8 +182,9 @@ TEST(NextMeasurement, BoostAgainstNormalHeatingTellsTheGradientFromTheRate) {
 }
 
 TEST(NextMeasurement, CoolingIsAmongWhatTellsThermalHysteresisFromWarmUp) {
-  const Case hysteresis{plateaus(true), thermal(),
-                        term("temperature_hysteresis", {{"", 0.005}}, {{"width", 3.0}})};
+  const DiagnosedRun hysteresis{
+      plateaus(true), thermal(),
+      found_term("temperature_hysteresis", {{"", 0.005}}, {{"width", 3.0}})};
   const auto next = next_for(hysteresis, {"temperature_hysteresis", "warm_up"});
   EXPECT_THAT(next, Contains(action("let it cool")));
   // Heating alone would put the verdict on the state that the hysteresis happens to start from.
@@ -189,10 +192,10 @@ TEST(NextMeasurement, CoolingIsAmongWhatTellsThermalHysteresisFromWarmUp) {
 }
 
 TEST(NextMeasurement, ManyWindowsInOnePointTellSettlingFromHysteresis) {
-  const Case hysteresis{sweep_z(), magnetic(),
-                        term("magnetic_hysteresis_z", {{"", 0.02}}, {{"width", 0.3}})};
-  const Case settling{sweep_z(), magnetic(),
-                      term("magnetic_settling_z", {{"", 0.05}}, {{"tau", 60.0}})};
+  const DiagnosedRun hysteresis{
+      sweep_z(), magnetic(), found_term("magnetic_hysteresis_z", {{"", 0.02}}, {{"width", 0.3}})};
+  const DiagnosedRun settling{sweep_z(), magnetic(),
+                              found_term("magnetic_settling_z", {{"", 0.05}}, {{"tau", 60.0}})};
   for (const auto& next : {next_for(hysteresis, {"magnetic_hysteresis_z", "magnetic_settling_z"}),
                            next_for(settling, {"magnetic_settling_z", "magnetic_hysteresis_z"})}) {
     ASSERT_THAT(next, Not(IsEmpty()));
@@ -203,7 +206,7 @@ TEST(NextMeasurement, ManyWindowsInOnePointTellSettlingFromHysteresis) {
 }
 
 TEST(NextMeasurement, HoursAtRestTellASlowEffectFromARandomWalk) {
-  const Case drift{sweep_z(), magnetic(), term("drift_linear", {{"", 0.02}})};
+  const DiagnosedRun drift{sweep_z(), magnetic(), found_term("drift_linear", {{"", 0.02}})};
   const auto next = next_for(drift, {"drift_linear", "random_walk"});
   EXPECT_THAT(next, Contains(action("4 h at rest")));
   EXPECT_THAT(next, Contains(action("--quiet")));
@@ -212,28 +215,31 @@ TEST(NextMeasurement, HoursAtRestTellASlowEffectFromARandomWalk) {
 }
 
 TEST(NextMeasurement, AColdStartShowsWarmUpAgain) {
-  const Case warm_up{sweep_z(), magnetic(), term("warm_up", {{"", 0.1}}, {{"tau", 3000.0}})};
+  const DiagnosedRun warm_up{sweep_z(), magnetic(),
+                             found_term("warm_up", {{"", 0.1}}, {{"tau", 3000.0}})};
   const auto next = next_for(warm_up, {"warm_up", "random_walk"});
   ASSERT_THAT(next, Not(IsEmpty()));
   EXPECT_THAT(next.front(), action("start cold and record from power-on"));
 }
 
 TEST(NextMeasurement, LongRecordsTellADriftFromTheTailOfWarmUp) {
-  const Case drift{sweep_z(), magnetic(), term("drift_linear", {{"", 0.02}})};
+  const DiagnosedRun drift{sweep_z(), magnetic(), found_term("drift_linear", {{"", 0.02}})};
   const auto next = next_for(drift, {"drift_linear", "warm_up"});
   ASSERT_THAT(next, Not(IsEmpty()));
   EXPECT_THAT(next.front(), action("4 h at rest"));
 }
 
 TEST(NextMeasurement, SwitchingTheHeaterTellsItFromTheTemperature) {
-  const Case heater{plateaus(false), {term("bias")}, term("heater_power", {{"", 0.02}})};
+  const DiagnosedRun heater{
+      plateaus(false), {term("bias")}, found_term("heater_power", {{"", 0.02}})};
   const auto next = next_for(heater, {"heater_power", "temperature_linear"});
   EXPECT_THAT(next, Contains(action("switch the heater off for 60 s")));
 }
 
 TEST(NextMeasurement, PassingThroughAllTemperaturesTellsARippleFromAPolynomial) {
-  const Case ripple{plateaus(false), thermal(),
-                    term("temperature_ripple", {{"sin", 0.01}, {"cos", 0.01}}, {{"period", 8.0}})};
+  const DiagnosedRun ripple{
+      plateaus(false), thermal(),
+      found_term("temperature_ripple", {{"sin", 0.01}, {"cos", 0.01}}, {{"period", 8.0}})};
   const auto next = next_for(ripple, {"temperature_ripple", "temperature_cubic"});
   ASSERT_THAT(next, Not(IsEmpty()));
   EXPECT_THAT(next.front().action, AnyOf(HasSubstr("heat in one go"), HasSubstr("by 1 degC"),
@@ -242,15 +248,16 @@ TEST(NextMeasurement, PassingThroughAllTemperaturesTellsARippleFromAPolynomial) 
 }
 
 TEST(NextMeasurement, ASecondTemperatureTellsTheTemperatureDependenceOfASlope) {
-  const Case linear{sweep_z(45.0), {term("bias")}, term("magnetic_linear_z", {{"", 0.02}}), 20.0};
+  const DiagnosedRun linear{
+      sweep_z(45.0), {term("bias")}, found_term("magnetic_linear_z", {{"", 0.02}}), 20.0};
   const auto next = next_for(linear, {"magnetic_linear_z", "magnetic_temperature_z"});
   ASSERT_THAT(next, Not(IsEmpty()));
   EXPECT_THAT(next.front(), action("second thermostat temperature, 31 degC"));
 }
 
 TEST(NextMeasurement, WhatIsRecommendedIsExpectedToSucceed) {
-  const Case settling{sweep_z(), magnetic(),
-                      term("magnetic_settling_z", {{"", 0.05}}, {{"tau", 60.0}})};
+  const DiagnosedRun settling{sweep_z(), magnetic(),
+                              found_term("magnetic_settling_z", {{"", 0.05}}, {{"tau", 60.0}})};
   const auto next = next_for(settling, {"magnetic_settling_z", "magnetic_hysteresis_z"});
   EXPECT_THAT(next, SizeIs(testing::Le(2u)));
   EXPECT_THAT(next, Each(Field(&NextMeasurement::separation, Ge(3.6))));
@@ -260,8 +267,8 @@ TEST(NextMeasurement, WhatIsRecommendedIsExpectedToSucceed) {
 }
 
 TEST(NextMeasurement, NothingIsRecommendedForAnEffectFarBelowTheNoise) {
-  const Case faint{sweep_z(), magnetic(),
-                   term("magnetic_settling_z", {{"", 0.05}}, {{"tau", 60.0}}), 0.05};
+  const DiagnosedRun faint{sweep_z(), magnetic(),
+                           found_term("magnetic_settling_z", {{"", 0.05}}, {{"tau", 60.0}}), 0.05};
   const auto next = next_for(faint, {"magnetic_settling_z", "magnetic_hysteresis_z"});
   ASSERT_THAT(next, SizeIs(1));
   EXPECT_THAT(next.front(), action("none of the"));
@@ -272,7 +279,8 @@ TEST(NextMeasurement, RepeatsWhereThePresentRunShouldHaveDone) {
   // Over a day a walk hides the drift's slope, and a jump stands out of both.
   BenchSchedule bench(21.0);
   bench.record(24.0 * 3600.0, 600.0, "static");
-  const Case drift{bench.recorded(), {term("bias")}, term("drift_linear", {{"", 0.01}})};
+  const DiagnosedRun drift{
+      bench.recorded(), {term("bias")}, found_term("drift_linear", {{"", 0.01}})};
   const auto next = next_for(drift, {"drift_linear", "bias_step"});
   ASSERT_THAT(next, Not(IsEmpty()));
   EXPECT_THAT(next.front(), action("repeat the present run"));
@@ -280,8 +288,8 @@ TEST(NextMeasurement, RepeatsWhereThePresentRunShouldHaveDone) {
 }
 
 TEST(NextMeasurement, ThreeMembersAreToldApartPairByPairWhereNoExperimentServesAll) {
-  const Case hysteresis{sweep_z(), magnetic(),
-                        term("magnetic_hysteresis_z", {{"", 0.02}}, {{"width", 0.3}})};
+  const DiagnosedRun hysteresis{
+      sweep_z(), magnetic(), found_term("magnetic_hysteresis_z", {{"", 0.02}}, {{"width", 0.3}})};
   const auto next =
       next_for(hysteresis, {"magnetic_hysteresis_z", "magnetic_settling_z", "drift_linear"});
   ASSERT_THAT(next, Not(IsEmpty()));
@@ -293,7 +301,7 @@ TEST(NextMeasurement, ThreeMembersAreToldApartPairByPairWhereNoExperimentServesA
 }
 
 TEST(NextMeasurement, ASetThatTheCatalogueCannotEvaluateGetsNoAdvice) {
-  const Case found{sweep_z(), magnetic(), term("drift_linear", {{"", 0.02}})};
+  const DiagnosedRun found{sweep_z(), magnetic(), found_term("drift_linear", {{"", 0.02}})};
   EXPECT_THAT(next_for(found, {"my_own_term", "drift_linear"}), IsEmpty());
   EXPECT_THAT(next_for(found, {"drift_linear", "my_own_term"}), IsEmpty());
 }

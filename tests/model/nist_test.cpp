@@ -25,7 +25,7 @@ json problems(const std::string& file) {
   return json::parse(in).at("problems");
 }
 
-Table table_of(const json& problem) {
+Table problem_table(const json& problem) {
   std::string name = problem.at("name");
   std::transform(name.begin(), name.end(), name.begin(), [](char c) { return std::tolower(c); });
   auto table = read_csv(kFolder + name + ".csv");
@@ -91,7 +91,7 @@ struct Agreement {
 
 Agreement agreement(const json& problem, const ModelFile& model) {
   Agreement least;
-  const auto result = fit(table_of(problem), model, {});
+  const auto result = fit(problem_table(problem), model, {});
   EXPECT_TRUE(result) << problem.at("name") << ": " << (result ? "" : result.error().message);
   if (!result) return {0.0, 0.0, 0.0};
   for (const auto& [name, certified] : problem.at("certified").items()) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "model/svg_plot.hpp"
+#include "tests/model/models.hpp"
 #include "tests/support/markup.hpp"
 
 namespace fogbench::model {
@@ -16,15 +17,9 @@ using testing::HasSubstr;
 using testing::Not;
 
 Comparison thermal_comparison(Table& table, config::ModelFile& model) {
-  table.set_column("temperature_c", {31, 35, 40, 45, 50, 55});
-  table.set_column("rate_deg_per_h", {0.489, 0.346, 0.498, 0.540, 0.919, 1.564});
-  table.set_column("sigma_deg_per_h", {0.081, 0.051, 0.051, 0.043, 0.043, 0.019});
+  table = published_thermal();
+  model = model_of({term("bias", 0.1), term("temperature_linear", 0.02)});
   model.name = "published <thermal> model";
-  model.terms.resize(2);
-  model.terms[0].effect = "bias";
-  model.terms[0].coefficient = 0.1;
-  model.terms[1].effect = "temperature_linear";
-  model.terms[1].coefficient = 0.02;
   auto result = compare(table, model, {.as_is = true});
   return result ? std::move(*result) : Comparison{};
 }
