@@ -178,6 +178,7 @@ Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure,
   header.gyro_serial_number = procedure.gyro;
   header.operator_name = operator_name;
   header.software_version = FOGBENCH_VERSION;
+  clock_->follow_calendar();
   header.started_at = drivers::utc_text(clock_->wall_now());
   header.frame_rate_hz = bench_.gyro->frame_rate_hz();
   header.reference_rate_deg_per_h = setup_.bench.gyro.reference_rate.value;

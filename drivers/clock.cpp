@@ -6,14 +6,19 @@
 #include <cmath>
 #include <cstdio>
 #include <thread>
+#include <utility>
 
 namespace fogbench::drivers {
 
-SteadyClock::SteadyClock(double speed)
+SteadyClock::SteadyClock(double speed, Calendar calendar)
     : speed_(speed),
+      calendar_(std::move(calendar)),
       started_(std::chrono::steady_clock::now()),
-      wall_started_(
-          std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now())) {}
+      wall_at_zero_(calendar_()) {}
+
+Clock::WallTime SteadyClock::system_calendar() {
+  return std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now());
+}
 
 Clock::Instant SteadyClock::now() const {
   const std::chrono::duration<double, std::nano> real = std::chrono::steady_clock::now() - started_;
@@ -21,7 +26,15 @@ Clock::Instant SteadyClock::now() const {
 }
 
 Clock::WallTime SteadyClock::wall_now() const {
-  return wall_started_ + std::chrono::floor<std::chrono::milliseconds>(now().time_since_epoch());
+  return wall_at_zero_ + std::chrono::floor<std::chrono::milliseconds>(now().time_since_epoch());
+}
+
+Clock::Duration SteadyClock::calendar_offset() const {
+  return speed_ == 1.0 ? calendar_() - wall_now() : Duration::zero();
+}
+
+void SteadyClock::follow_calendar() {
+  wall_at_zero_ += std::chrono::floor<std::chrono::milliseconds>(calendar_offset());
 }
 
 void SteadyClock::sleep_until(Instant deadline) {
@@ -55,6 +68,11 @@ VirtualClock::VirtualClock(WallTime start) : start_(start) {}
 
 Clock::WallTime VirtualClock::wall_now() const {
   return start_ + std::chrono::floor<std::chrono::milliseconds>(now_.time_since_epoch());
+}
+
+void VirtualClock::follow_calendar() {
+  start_ += std::chrono::floor<std::chrono::milliseconds>(offset_);
+  offset_ = Duration::zero();
 }
 
 void VirtualClock::sleep_until(Instant deadline) {

@@ -56,6 +56,7 @@ Status BenchWatch::tick(Instant deadline) {
   const Instant now = clock_.now();
   if (now < next_reading_ || interrupted_()) return {};
   next_reading_ = std::max(next_reading_ + kPeriod, now);
+  if (const auto noted = note_calendar(); !noted) return noted;
   return read_slow_instruments();
 }
 
@@ -113,6 +114,22 @@ Status BenchWatch::read_slow_instruments() {
   return recorder_.monitor(row_);
 }
 
+Status BenchWatch::note_calendar() {
+  const auto offset = clock_.calendar_offset();
+  const auto step = offset - calendar_noted_;
+  if (kept_from_record_ || std::chrono::abs(step) <= kCalendarStep) return {};
+  const double step_s = drivers::to_seconds(step);
+  const auto noted = event(
+      "warning",
+      fmt::format("the machine's clock was set {} by {:.1f} s{}; dates of this run follow the "
+                  "clock as it was at its start",
+                  step_s > 0.0 ? "forward" : "back", std::abs(step_s),
+                  step_s > 0.0 ? ", or the machine slept" : ""),
+      fmt::format(R"({{"clock_step_s":{:.3f}}})", step_s));
+  if (noted) calendar_noted_ = offset;
+  return noted;
+}
+
 Status BenchWatch::check_new(Outage& outage, Instant taken_at) {
   if (taken_at <= outage.last_taken) {
     return Error{ErrorCode::kStale, "the same reading came again"};
@@ -158,7 +175,7 @@ bool BenchWatch::all_answer() const {
 Observation BenchWatch::observed(const Commanded& commanded) const {
   return {row_, commanded, bench_.gyro->statistics(),
           drivers::to_seconds(clock_.now() - gyro_.last_taken),
-          std::chrono::floor<std::chrono::days>(clock_.wall_now())};
+          std::chrono::floor<std::chrono::days>(clock_.wall_now() + clock_.calendar_offset())};
 }
 
 Status BenchWatch::event(const std::string& severity, const std::string& message,

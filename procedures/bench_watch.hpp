@@ -32,6 +32,10 @@ class BenchWatch {
   /// How long the slow readings are kept: a window looks back to just before its start.
   static constexpr double kRecentS = 60.0;
 
+  /// A machine's clock that is set by more than this is on record. A leap second is not, and a time
+  /// server that slews the clock slews the steady one with it.
+  static constexpr drivers::Clock::Duration kCalendarStep = std::chrono::seconds{1};
+
   /// How often a sleep looks whether it is to be cut short: what an abort waits for, beyond the
   /// instrument that is being spoken to.
   static constexpr drivers::Clock::Duration kNap = std::chrono::milliseconds{5};
@@ -93,6 +97,7 @@ class BenchWatch {
   /// Keeps count of the outage; an error when it has lasted too long or cannot be recorded.
   Status note(Outage& outage, const Status& outcome);
   static Status check_new(Outage& outage, Instant taken_at);
+  Status note_calendar();
 
   const config::BenchConfig& config_;
   drivers::Bench& bench_;
@@ -106,6 +111,7 @@ class BenchWatch {
   std::int64_t next_frame_ = 0;
   Instant power_on_{};
   Instant next_reading_{};
+  drivers::Clock::Duration calendar_noted_{};  ///< the clock's offset that is on record
   config::Degree azimuth_{0.0};
   bool field_guarded_ = false;
   bool kept_from_record_ = false;

@@ -49,5 +49,44 @@ TEST(SteadyClock, RunsFasterByItsSpeed) {
   EXPECT_GE(clock.now() - before, 1s);
 }
 
+TEST(SteadyClock, DatesFollowTheCalendarFromWhereItWasFollowedLast) {
+  Clock::WallTime set = std::chrono::sys_days{std::chrono::year{2026} / std::chrono::January / 1};
+  SteadyClock clock(1.0, [&set] { return set; });
+  const auto before = clock.wall_now();
+  EXPECT_LT(before - set, 1min);
+  set += 240h;  // the steady clock is not told
+  EXPECT_GT(clock.calendar_offset(), 239h);
+  EXPECT_LT(clock.wall_now() - before, 1min) << "not before it is followed";
+  clock.follow_calendar();
+  EXPECT_LT(clock.wall_now() - set, 1min);
+  EXPECT_LT(clock.calendar_offset(), 1min);
+  set -= 1h;
+  EXPECT_LT(clock.calendar_offset(), -59min);
+  EXPECT_LT(clock.now().time_since_epoch(), 1min) << "no duration sees any of this";
+}
+
+TEST(SteadyClock, ACalendarThatRunsFasterIsNotTheMachines) {
+  Clock::WallTime set = std::chrono::sys_days{std::chrono::year{2026} / std::chrono::January / 1};
+  SteadyClock clock(100.0, [&set] { return set; });
+  set += 1h;
+  EXPECT_EQ(clock.calendar_offset(), 0s);
+  const auto before = clock.wall_now();
+  clock.follow_calendar();
+  EXPECT_LT(clock.wall_now() - before, 10min);
+}
+
+TEST(VirtualClock, FollowsACalendarThatWasSet) {
+  VirtualClock clock;
+  const auto before = clock.wall_now();
+  clock.set_calendar(-1h);
+  clock.set_calendar(-1h);
+  EXPECT_EQ(clock.calendar_offset(), -2h);
+  EXPECT_EQ(clock.wall_now(), before);
+  clock.follow_calendar();
+  EXPECT_EQ(clock.wall_now(), before - 2h);
+  EXPECT_EQ(clock.calendar_offset(), 0s);
+  EXPECT_EQ(clock.now().time_since_epoch(), 0ns);
+}
+
 }  // namespace
 }  // namespace fogbench::drivers

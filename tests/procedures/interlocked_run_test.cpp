@@ -224,6 +224,17 @@ TEST(InterlockedRun, ACalibrationThatEndsAtMidnightIsWarnedOf) {
                         "days (trips above 0"));
 }
 
+TEST(InterlockedRun, ACalibrationIsHeldAgainstTheDateThatTheMachineHasNow) {
+  Rig rig;
+  rig.config.interlocks = default_interlocks(rig.config);
+  rig.config.magnetometer.calibration_due = "2026-01-01";
+  rig.engine.on_progress([&, told = 0](const Progress&) mutable {
+    if (++told == 5) rig.plant.clock.set_calendar(std::chrono::hours{72});
+  });
+  rig.summary_of({wait(20.0)});
+  EXPECT_TRUE(rig.log.has_event("magnetometer: calibration is overdue by 3 days"));
+}
+
 TEST(InterlockedRun, IsRefusedForEveryInterlockThatIsViolatedAtTheStart) {
   Rig rig;
   rig.config.interlocks = default_interlocks(rig.config);
@@ -266,6 +277,34 @@ TEST(InterlockedRun, IsAbortedWhileItsStartIsUndecided) {
   };
   const auto summary = rig.summary_of({average()});
   EXPECT_EQ(summary.end.outcome, RunOutcome::kAborted) << summary.end.reason;
+}
+
+TEST(AnAbort, OfABenchThatNoLongerAnswersEndsFailedWithinTheStopLaddersTime) {
+  SimulatedRig rig;
+  constexpr double kSilentFrom = 20.0;
+  for (const char* device : {"thermostat", "coil_horizontal", "coil_vertical", "magnetometer"}) {
+    rig.fault(device, FaultKind::kTimeout, kSilentFrom, 1e6);
+  }
+  drivers::Clock::Instant asked{};
+  rig.on_progress = [&](RunEngine& engine, const Progress&) {
+    const auto now = rig.clock.now();
+    if (asked != drivers::Clock::Instant{} ||
+        drivers::to_seconds(now.time_since_epoch()) < kSilentFrom)
+      return;
+    asked = now;
+    engine.request_abort();
+  };
+  const RunEnd end = rig.run({heat(31.0), wait(60.0)});
+  ASSERT_NE(asked, drivers::Clock::Instant{});
+  EXPECT_EQ(end.outcome, RunOutcome::kFailed) << "aborted means that the bench is safe";
+  EXPECT_FALSE(end.safe_state_reached);
+  EXPECT_THAT(
+      end.reason,
+      HasSubstr("aborted on request; the safe state is not confirmed for coil_horizontal ("));
+  EXPECT_THAT(end.reason, HasSubstr("; coil_vertical ("));
+  EXPECT_THAT(end.reason, HasSubstr("; thermostat ("));
+  // Half of what the daemon gives it.
+  EXPECT_LT(rig.clock.now() - asked, std::chrono::seconds{60});
 }
 
 }  // namespace

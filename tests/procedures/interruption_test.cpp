@@ -258,6 +258,51 @@ TEST(Interruption, AnAbortEndsAPauseToo) {
   EXPECT_TRUE(rig.log.points.empty());
 }
 
+TEST(Interruption, AClockThatIsSetIsOnRecordAndTheRunsDatesDoNotFollow) {
+  Rig rig;
+  bool full = false;
+  std::vector<drivers::Clock::WallTime> dates;
+  rig.log.fails = [&](const std::string& call) { return full && call != "end_run"; };
+  rig.engine.wait_for_record();
+  rig.engine.on_progress([&, told = std::size_t{0}](const Progress&) mutable {
+    auto& clock = rig.plant.clock;
+    switch (++told) {
+      case 5:
+        clock.set_calendar(std::chrono::hours{1});
+        break;
+      case 10:
+        clock.set_calendar(std::chrono::seconds{1});  // as a leap second
+        break;
+      case 15:
+        clock.set_calendar(-std::chrono::hours{2});
+        full = true;
+        break;
+      case 20:
+        full = false;
+        break;
+      default:
+        break;
+    }
+    dates.push_back(clock.wall_now());
+  });
+  const auto started = rig.plant.clock.wall_now();
+  const auto summary = rig.summary_of({wait(60.0)});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted) << summary.end.reason;
+  std::vector<std::string> steps;
+  for (const auto& event : rig.log.events) {
+    if (event.data_json.find("clock_step_s") == std::string::npos) continue;
+    EXPECT_EQ(event.severity, "warning");
+    steps.push_back(event.data_json);
+  }
+  EXPECT_THAT(steps, ElementsAre(R"({"clock_step_s":3600.000})", R"({"clock_step_s":-7199.000})"));
+  EXPECT_TRUE(
+      rig.log.has_event("the machine's clock was set back by 7199.0 s; dates of this run "
+                        "follow the clock as it was at its start"));
+  EXPECT_TRUE(std::is_sorted(dates.begin(), dates.end()));
+  EXPECT_EQ(summary.end.ended_at, drivers::utc_text(rig.plant.clock.wall_now()));
+  EXPECT_LT(rig.plant.clock.wall_now() - started, std::chrono::minutes{3});
+}
+
 TEST(Interruption, ARequestForARunThatCannotBeBegunIsNotKeptForTheNext) {
   for (const std::string dead : {"gyro.identity", "begin_run"}) {
     Rig rig;
