@@ -179,7 +179,8 @@ Status run(const DaemonOptions& options) {
 int main(int argc, char** argv) {
   using fogbench::ExitStatus;
   spdlog::set_default_logger(spdlog::stderr_logger_mt("fogbenchd"));
-  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %l %v");
+  // UTC as in the record: an hour that daylight saving repeats would be there twice.
+  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
   CLI::App app{"fogbenchd - runs acceptance procedures on a bench and logs them", "fogbenchd"};
   fogbench::daemon::DaemonOptions options;
   fogbench::daemon::declare(app, options);
