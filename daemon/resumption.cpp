@@ -138,10 +138,14 @@ Status compare(const std::vector<InstrumentRecord>& then,
 }  // namespace
 
 Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, const Setup& setup) {
+  const bool under_way = log.being_written(run);  // before its record: it may end meanwhile
   const auto chain = log.chain(run);
   if (!chain) return chain.error();
   const StoredRun& last = chain->back();
   if (const Status good = check(last, setup); !good) return good.error();
+  if (!last.end && under_way) {
+    return config::bad_input(fmt::format("run {} cannot be taken up: it is still under way", run));
+  }
   auto planned = recorded_procedure(last, setup.bench);
   if (!planned) return planned.error();
   const auto steps = log.steps(run);
@@ -164,9 +168,11 @@ Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, co
   before.instruments = std::move(*instruments);
   const auto stopped = log.last_time(run);
   if (!stopped) return stopped.error();
+  const auto stepped_s = log.clock_steps_s(run);
+  if (!stepped_s) return stepped_s.error();
   const double begun_s = steps->empty() ? *stopped : steps->front().started_s;
-  before.stopped_at_s =
-      drivers::seconds_of_utc(last.header.started_at) + std::max(0.0, *stopped - begun_s);
+  before.stopped_at_s = drivers::seconds_of_utc(last.header.started_at) +
+                        std::max(0.0, *stopped - begun_s) + *stepped_s;
   planned->plan = std::move(resumed->plan);
   planned->takes_up = std::move(before);
   planned->gyro = last.header.gyro_serial_number;
@@ -200,13 +206,22 @@ Result<Continuation> take_up(const PlannedProcedure& procedure, procedures::RunE
   return continuation;
 }
 
-Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const std::string& bench) {
+Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const Setup& setup) {
   const auto runs = log.runs();
   if (!runs) return runs.error();
-  const auto last = std::find_if(runs->rbegin(), runs->rend(),
-                                 [&](const StoredRun& run) { return run.header.bench == bench; });
+  const auto counts = [&](const StoredRun& run) {
+    // A real bench and a dry run of its file have the same name.
+    const bool simulated = !run.header.scenario_json.empty();
+    return run.header.bench == setup.bench.name && simulated == !setup.scenario_json.empty() &&
+           (run.end || !log.being_written(run.run));
+  };
+  const auto last = std::find_if(runs->rbegin(), runs->rend(), counts);
   if (last == runs->rend() || last->end) return std::optional<StoredRun>{};
-  return std::optional(*last);
+  // It may have ended since it was read.
+  auto present = log.run(last->run);
+  if (!present) return present.error();
+  if (present->end) return std::optional<StoredRun>{};
+  return std::optional(std::move(*present));
 }
 
 }  // namespace fogbench::daemon

@@ -26,7 +26,8 @@ Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, co
 Result<procedures::Continuation> take_up(const PlannedProcedure& procedure,
                                          procedures::RunEngine& engine, drivers::Clock& clock);
 
-/// The last run of this bench, when nobody ended it.
-Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const std::string& bench);
+/// The last run of this bench when nobody ended it. What another program writes at this moment does
+/// not count, nor does a dry run of a real bench's file.
+Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const Setup& setup);
 
 }  // namespace fogbench::daemon

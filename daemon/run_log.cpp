@@ -39,13 +39,16 @@ struct RunLog::Statements {
   Statement step_started, step_ended, event, point, void_block, monitor, chunk;
 };
 
-RunLog::RunLog(std::unique_ptr<Database> database) : database_(std::move(database)) {}
+RunLog::RunLog(std::unique_ptr<Database> database, std::unique_ptr<WritingLock> writing)
+    : database_(std::move(database)), writing_(std::move(writing)) {}
 RunLog::~RunLog() = default;
 
 Result<std::unique_ptr<RunLog>> RunLog::open(const std::filesystem::path& path) {
   auto database = open_store_for_writing(path);
   if (!database) return database.error();
-  std::unique_ptr<RunLog> log(new RunLog(std::move(*database)));
+  auto writing = WritingLock::open(path);
+  if (!writing) return writing.error();
+  std::unique_ptr<RunLog> log(new RunLog(std::move(*database), std::move(*writing)));
   if (const Status prepared = log->prepare(); !prepared) return prepared.error();
   return log;
 }
@@ -129,6 +132,8 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
     }
     if (const Status ok = insert->run(); !ok) return ok;
     run_ = database_->last_insert_id();
+    // Before anybody can see it.
+    if (const Status held = writing_->hold(run_); !held) return held;
     if (header.continues) {
       if (const Status ok = take_up(*header.continues); !ok) return ok;
     }
@@ -139,7 +144,10 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
     }
     return {};
   });
-  if (!written) return written.error();
+  if (!written) {
+    writing_->release();
+    return written.error();
+  }
   return run_;
 }
 
@@ -289,6 +297,13 @@ Status RunLog::write_chunk(std::size_t frames) {
 }
 
 Status RunLog::end_run(const RunEnd& end) {
+  Status written = write_end(end);
+  // Over, whether or not it is on record: nothing is measured any more.
+  writing_->release();
+  return written;
+}
+
+Status RunLog::write_end(const RunEnd& end) {
   if (!pending_.index.empty()) {
     if (const Status ok = write_chunk(pending_.index.size()); !ok) return ok;
   }

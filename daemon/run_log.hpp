@@ -4,7 +4,8 @@
 // A point, an event, the begin and the end of a run are committed and synced when the call
 // returns. Steps are committed (they survive the death of the process, and the next point syncs
 // them). Monitor rows wait for the next commit, at most kMonitorRows; gyro frames wait for a
-// chunk of kChunkFrames. Memory does not grow with the run's length.
+// chunk of kChunkFrames. Memory does not grow with the run's length. The run under way is held
+// (writing_lock.hpp), so that nobody takes it for an interrupted one.
 
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 
 #include "daemon/chunk_codec.hpp"
 #include "daemon/sqlite.hpp"
+#include "daemon/writing_lock.hpp"
 #include "procedures/recorder.hpp"
 
 namespace fogbench::daemon {
@@ -40,7 +42,7 @@ class RunLog final : public procedures::Recorder {
   Status give_up(std::int64_t run, const std::string& reason);
 
  private:
-  explicit RunLog(std::unique_ptr<Database> database);
+  RunLog(std::unique_ptr<Database> database, std::unique_ptr<WritingLock> writing);
   Status prepare();
   /// Whether a commit waits for the disk: kFull outlives a power cut, kNormal the process's death.
   enum class Sync { kNormal, kFull };
@@ -51,10 +53,12 @@ class RunLog final : public procedures::Recorder {
   Status take_up(const procedures::Continuation& before);
   Status write_monitor();
   Status write_chunk(std::size_t frames);
+  Status write_end(const procedures::RunEnd& end);
 
   std::unique_ptr<Database> database_;  // before the statements: it goes after them
   struct Statements;
   std::unique_ptr<Statements> statements_;
+  std::unique_ptr<WritingLock> writing_;
   Sync sync_ = Sync::kFull;  ///< as open_store_for_writing leaves it
   std::int64_t run_ = 0;
   std::int64_t step_ = 0;  ///< the row of the step under way

@@ -9,6 +9,7 @@
 #include "daemon/chunk_codec.hpp"
 #include "daemon/names.hpp"
 #include "daemon/store.hpp"
+#include "daemon/writing_lock.hpp"
 
 namespace fogbench::daemon {
 namespace fs = std::filesystem;
@@ -209,6 +210,7 @@ Result<std::vector<StoredPoint>> RunLogReader::chain_points(std::int64_t run) {
   if (!parts) return parts.error();
   std::vector<StoredPoint> all;
   std::optional<double> first_zero_s;  // by the calendar: when the first run's time was 0
+  double set_s = 0.0;                  // how far the calendar was set forward since
   for (const StoredRun& part : *parts) {
     auto points = this->points(part.run);
     if (!points) return points.error();
@@ -216,7 +218,10 @@ Result<std::vector<StoredPoint>> RunLogReader::chain_points(std::int64_t run) {
       const auto steps = this->steps(part.run);
       if (!steps) return steps.error();
       const double begin_s = steps->empty() ? 0.0 : steps->front().started_s;
-      const double zero_s = drivers::seconds_of_utc(part.header.started_at) - begin_s;
+      const double zero_s = drivers::seconds_of_utc(part.header.started_at) - begin_s - set_s;
+      const auto stepped_s = clock_steps_s(part.run);
+      if (!stepped_s) return stepped_s.error();
+      set_s += *stepped_s;
       if (!first_zero_s) first_zero_s = zero_s;
       double shift_s = zero_s - *first_zero_s;
       if (!all.empty()) {
@@ -275,6 +280,21 @@ Result<double> RunLogReader::last_time(std::int64_t run) {
   const auto row = select->step();
   if (!row) return row.error();
   return *row ? select->real(0) : 0.0;
+}
+
+Result<double> RunLogReader::clock_steps_s(std::int64_t run) {
+  auto select = database_->prepare(
+      "SELECT coalesce(sum(json_extract(data_json, '$.clock_step_s')), 0.0) FROM events "
+      "WHERE run = ? AND data_json LIKE '{\"clock_step_s\"%'");
+  if (!select) return select.error();
+  select->bind(run);
+  const auto row = select->step();
+  if (!row) return row.error();
+  return *row ? select->real(0) : 0.0;
+}
+
+bool RunLogReader::being_written(std::int64_t run) const {
+  return WritingLock::held(path_, run);
 }
 
 Status RunLogReader::read_gyro(std::int64_t run,

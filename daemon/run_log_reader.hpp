@@ -69,6 +69,10 @@ class RunLogReader {
   Result<std::vector<StoredStep>> steps(std::int64_t run);
   /// The run's last trace, seconds since power-on; 0 when there is none.
   Result<double> last_time(std::int64_t run);
+  /// How far the machine's clock was set forward during the run, in all; negative: back.
+  Result<double> clock_steps_s(std::int64_t run);
+  /// Whether some program writes it at this moment.
+  bool being_written(std::int64_t run) const;
   /// Calls `use` with each chunk of the raw stream in turn and stops at its first error. A damaged
   /// chunk is kStore, with its number.
   Status read_gyro(std::int64_t run,

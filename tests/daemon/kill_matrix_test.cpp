@@ -283,6 +283,7 @@ TEST_F(KillMatrix, ARunThatTakesUpAnotherMayBeKilledItself) {
 TEST_F(KillMatrix, AJournalCutAnywhereIsReadUpToTheCut) {
   undisturbed();
   const fs::path store = folder_ / "killed.db", cut = folder_ / "cut.db";
+  const daemon::Setup made = setup();
   ASSERT_TRUE(run_and_kill(store, 0, Deadly::kRecord, records_ - 4));
   const std::string wal = support::read_text(store.string() + "-wal");
   ASSERT_GT(wal.size(), 100000U);
@@ -301,14 +302,14 @@ TEST_F(KillMatrix, AJournalCutAnywhereIsReadUpToTheCut) {
     fs::remove(cut.string() + "-shm");
     const auto log = RunLogReader::open(cut);
     ASSERT_TRUE(log) << length << " of " << wal.size() << " bytes: " << log.error().message;
-    const auto interrupted = interrupted_run(**log, "simulated");
+    const auto interrupted = interrupted_run(**log, made);
     ASSERT_TRUE(interrupted) << interrupted.error().message;
     const std::size_t points = points_of(cut, 1).size();
     EXPECT_LE(points, before);
     before = points;
     ++cuts;
     if (*interrupted && cuts % 10 == 0) {
-      const auto planned = plan_resumption(**log, 1, setup());
+      const auto planned = plan_resumption(**log, 1, made);
       EXPECT_TRUE(planned) << planned.error().message;
     }
   }

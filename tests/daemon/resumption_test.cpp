@@ -65,6 +65,13 @@ class ResumptionTest : public testing::Test {
     return planned.error().message;
   }
 
+  std::int64_t offered() {
+    const auto log = RunLogReader::open(store_);
+    const auto run = interrupted_run(**log, setup_);
+    EXPECT_TRUE(run) << run.error().message;
+    return run && *run ? (*run)->run : 0;
+  }
+
   support::TemporaryFolder folder_;
   std::filesystem::path store_{folder_ / "store.db"};
   daemon::Setup setup_;
@@ -175,17 +182,61 @@ TEST_F(ResumptionTest, TwoRunsNeverTakeUpTheSame) {
 }
 
 TEST_F(ResumptionTest, TheLastRunOfTheBenchIsOfferedWhenNobodyEndedIt) {
-  const auto offered = [this]() -> std::int64_t {
-    const auto log = RunLogReader::open(store_);
-    const auto run = interrupted_run(**log, setup_.bench.name);
-    EXPECT_TRUE(run) << run.error().message;
-    return *run ? (*run)->run : 0;
-  };
   interrupt();
   EXPECT_EQ(offered(), 1);
   const auto log = RunLog::open(store_);
   ASSERT_TRUE((*log)->give_up(1, "given up by alice"));
   EXPECT_EQ(offered(), 0);
+}
+
+TEST_F(ResumptionTest, WhatAnotherProgramWritesIsNotInterrupted) {
+  interrupt();
+  auto other = RunLog::open(store_);
+  ASSERT_TRUE(other) << other.error().message;
+  ASSERT_TRUE((*other)->begin_run(header_, {}));
+  EXPECT_EQ(offered(), 1) << "run 2 is under way: it neither waits nor hides what does";
+  EXPECT_THAT(refusal(2), HasSubstr("run 2 cannot be taken up: it is still under way"));
+  EXPECT_EQ(refusal(1), "taken up");
+  ASSERT_TRUE((*other)->begin_run(header_, {}));
+  EXPECT_EQ(offered(), 2) << "its writer has left it";
+  EXPECT_THAT(refusal(3), HasSubstr("still under way"));
+  other->reset();
+  EXPECT_EQ(offered(), 3) << "what holds it dies with its writer";
+  EXPECT_EQ(refusal(3), "taken up");
+}
+
+TEST_F(ResumptionTest, ARunThatEndsIsHeldNoLonger) {
+  auto log = RunLog::open(store_);
+  ASSERT_TRUE((*log)->begin_run(header_, {}));
+  const auto reader = RunLogReader::open(store_);
+  EXPECT_TRUE((*reader)->being_written(1));
+  EXPECT_FALSE((*reader)->being_written(2));
+  ASSERT_TRUE((*log)->end_run({procedures::RunOutcome::kAborted, "aborted", true, "", {}}));
+  EXPECT_FALSE((*reader)->being_written(1));
+  EXPECT_THAT(offered(), 0);
+}
+
+TEST_F(ResumptionTest, ADryRunOfARealBenchHidesNothingAndIsNotOffered) {
+  setup_.scenario_json.clear();
+  const std::string dry = std::exchange(header_.scenario_json, "");
+  interrupt();
+  header_.scenario_json = dry;
+  interrupt();
+  EXPECT_EQ(offered(), 1);
+}
+
+TEST_F(ResumptionTest, TheGapKnowsThatTheClockWasSet) {
+  interrupt();
+  {
+    const auto log = RunLog::open(store_);
+    ASSERT_TRUE((*log)->begin_run(header_, {{"gyro", identity_, "SIM-FOG-1", "", ""}}));
+    ASSERT_TRUE((*log)->step_started("1", "average", 0.0));
+    ASSERT_TRUE((*log)->event(3.0, "warning", "set forward", R"({"clock_step_s":3600.000})"));
+    ASSERT_TRUE((*log)->event(4.0, "warning", "set back", R"({"clock_step_s":-60.000})"));
+    ASSERT_TRUE((*log)->event(4.0, "info", "not JSON, by clock_step_s", "clock_step_s"));
+  }
+  EXPECT_EQ(plan(1)->takes_up->stopped_at_s, drivers::seconds_of_utc("2026-01-01T00:00:05Z"));
+  EXPECT_EQ(plan(2)->takes_up->stopped_at_s, drivers::seconds_of_utc("2026-01-01T00:59:04Z"));
 }
 
 }  // namespace
