@@ -52,7 +52,12 @@ void ControlServer::serve_once() {
     subscribed = subscribed || client->caller.subscription;
   }
   const auto wait = subscribed ? kSubscriptionWait : kLongestWait;
-  if (poll(files.data(), files.size(), static_cast<int>(wait.count())) < 0) return;
+  if (poll(files.data(), files.size(), static_cast<int>(wait.count())) < 0) {
+    // No memory, or fewer handles allowed than there are: asking again at once would do nothing
+    // else.
+    if (errno != EINTR) clock_.sleep_for(kLongestWait);
+    return;
+  }
 
   for (std::size_t i = 0; i < clients_.size(); ++i) {
     Client& client = *clients_[i];

@@ -231,6 +231,33 @@ TEST_F(ControlServerTest, ThereAreOnlySoManyConnections) {
   setrlimit(RLIMIT_NOFILE, &before);
 }
 
+TEST_F(ControlServerTest, WithoutFileHandlesWhoIsHereIsServedAndTheOthersWait) {
+  const Client here = connect();
+  EXPECT_EQ(ask(here, "hello"), "hello\n");
+  const Client late = connect();
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int lowest_free = dup(wake_.get());
+  close(lowest_free);
+  const auto limit_to = [&](int handles) {
+    const rlimit limit{static_cast<rlim_t>(handles), before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+  };
+  limit_to(lowest_free);
+  EXPECT_EQ(ask(here, "still"), "still\n");
+  EXPECT_EQ(ask(late, "me?"), "");
+  // The kernel polls no more files than there may be.
+  limit_to(1);
+  const auto begun = clock_.now();
+  serve(1);
+  EXPECT_GT(clock_.now(), begun) << "it waits before it tries again";
+  setrlimit(RLIMIT_NOFILE, &before);
+  clock_.sleep_for(seconds{1});
+  serve();
+  EXPECT_EQ(heard(late), "me?\n");
+  EXPECT_EQ(server_->connections(), 2U);
+}
+
 TEST_F(ControlServerTest, AUserWhoMayNotActHasFewerConnections) {
   // For the server this user is a stranger; root never is, and becomes one for the moment.
   server_ = std::make_unique<ControlServer>(socket_->descriptor(), wake_.get(),
