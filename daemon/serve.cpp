@@ -99,7 +99,7 @@ Status take_over(const Setup& setup, const std::filesystem::path& store, QueueFi
                  RunDesk& desk) {
   const auto log = RunLogReader::open(store);
   if (!log) return log.error();
-  const auto left = interrupted_run(**log, setup.bench.name);
+  const auto left = interrupted_run(**log, setup);
   if (!left) return left.error();
   if (*left) {
     const procedures::RunHeader& header = (*left)->header;
@@ -126,9 +126,10 @@ void run_jobs(Session& session, RunDesk& desk) {
       const auto summary = session.run(job->procedure, job->by.name);
       if (summary) {
         const procedures::RunEnd& end = summary->end;
-        spdlog::info("run {}, {}: {} points, {}; the bench is {}", summary->run, name,
-                     summary->points, end.reason,
-                     end.safe_state_reached ? "in its safe state" : "NOT in its safe state");
+        spdlog::log(end.safe_state_reached ? spdlog::level::info : spdlog::level::critical,
+                    "run {}, {}: {} points, {}; the bench is {}", summary->run, name,
+                    summary->points, end.reason,
+                    end.safe_state_reached ? "in its safe state" : "NOT in its safe state");
       } else {
         spdlog::error("job {}, {}: {}", job->job, name, summary.error().message);
       }
@@ -141,7 +142,8 @@ void run_jobs(Session& session, RunDesk& desk) {
 
 /// Serves until the bench's thread has left the desk. `report` is called several times a second.
 void serve_clients(ControlServer& server, const ControlMethods& methods, RunDesk& desk, int signals,
-                   drivers::Clock& clock, const std::function<void()>& report) {
+                   drivers::Clock& clock, drivers::Clock::Duration abort_time,
+                   const std::function<void()>& report) {
   bool asked_to_end = false;
   constexpr auto kNever = drivers::Clock::Instant::max();
   auto forced_at = kNever;  // when the abort under way will have lasted too long
@@ -159,9 +161,10 @@ void serve_clients(ControlServer& server, const ControlMethods& methods, RunDesk
     if (!desk.aborting()) {
       forced_at = kNever;
     } else if (forced_at == kNever) {
-      forced_at = clock.now() + kAbortTime;
+      forced_at = clock.now() + abort_time;
     } else if (clock.now() > forced_at) {
-      end_at_once(fmt::format("no safe state within {} s of the abort", kAbortTime.count()));
+      end_at_once(
+          fmt::format("no safe state within {} s of the abort", drivers::to_seconds(abort_time)));
     }
   }
 }
@@ -219,7 +222,7 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   pthread_setname_np(bench_thread.native_handle(), "bench");
   ServiceManager manager(clock);
   manager.ready();
-  serve_clients(server, methods, desk, signals.get(), clock, [&] {
+  serve_clients(server, methods, desk, signals.get(), clock, options.abort_time, [&] {
     manager.report(desk);
     methods.totals().connections = server.connections();
     methods.totals().connections_refused = server.refused();

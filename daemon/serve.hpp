@@ -33,6 +33,7 @@ struct ServeOptions {
   std::string operators;  ///< name of the group whose members may act; empty: none
   std::string observers;  ///< name of the group whose members may read; empty: see AccessRules
   std::string metrics;    ///< file that holds them; empty: none
+  drivers::Clock::Duration abort_time = kAbortTime;
 };
 
 /// Returns after a signal, the bench in its safe state. Errors: kUsage for a virtual clock, which
