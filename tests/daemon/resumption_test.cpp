@@ -237,6 +237,16 @@ TEST_F(ResumptionTest, TheGapKnowsThatTheClockWasSet) {
   }
   EXPECT_EQ(plan(1)->takes_up->stopped_at_s, drivers::seconds_of_utc("2026-01-01T00:00:05Z"));
   EXPECT_EQ(plan(2)->takes_up->stopped_at_s, drivers::seconds_of_utc("2026-01-01T00:59:04Z"));
+
+  // A minute later by a clock that was right.
+  header_.started_at = "2026-01-01T01:00:04Z";
+  header_.continues = procedures::Continuation{.run = 2, .first_step = "1"};
+  interrupt();
+  const auto log = RunLogReader::open(store_);
+  const auto points = (*log)->chain_points(3);
+  ASSERT_TRUE(points) << points.error().message;
+  ASSERT_EQ(points->size(), 1U);
+  EXPECT_DOUBLE_EQ((*points)[0].point.time_s, 4.0 + 60.0 + 2.5);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
-// What a served bench survives: the death of its daemon, a full disk, a store that is moved away, a
-// thousand clients.
+// What a served bench survives: the death of its daemon, a full disk, a store that is moved away,
+// no file handles, a thousand clients, the machine's zone.
 
 #include <sys/resource.h>
 
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <thread>
 
 #include "tests/support/polling_clients.hpp"
@@ -22,6 +23,16 @@ class RecoveryTest : public ControlTest {
     return wait_until([least](const nlohmann::json& now) {
       return now["run"].is_object() && now["run"]["points"] >= least;
     });
+  }
+  /// Of its `stat` in /proc: what it has computed since it began.
+  static double cpu_of_thread_s(const std::string& thread) {
+    const std::string stat = support::read_text(thread + "/stat");
+    unsigned long user = 0, system = 0;
+    EXPECT_EQ(std::sscanf(stat.c_str() + stat.rfind(')'),
+                          ") %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user, &system),
+              2)
+        << stat;
+    return static_cast<double>(user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
   }
   /// The windows of a run's points, each after the one before.
   std::size_t points_in_order(const std::string& run) const {
@@ -140,6 +151,65 @@ TEST_F(RecoveryTest, AStoreThatIsMovedAwayHoldsTheRunUntilItIsBack) {
   fs::rename(away, store());
   EXPECT_EQ(fogbench({"watch"}).status, 0);
   EXPECT_EQ(points_in_order("1"), 40U);
+}
+
+TEST_F(RecoveryTest, EveryDateIsUtcInWhateverZoneTheMachineIs) {
+  const auto hour = [](int later_s) {
+    const std::time_t then = std::time(nullptr) + later_s;
+    std::tm utc{};
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:", gmtime_r(&then, &utc));
+    return std::string(text);
+  };
+  const std::string before = hour(0);
+  // Five hours ahead, and one more for daylight saving all the year round.
+  const auto daemon = serve({}, {{"TZ=AAA-5BBB,0/0,J365/25"}, {}});
+  json({"run", procedure("short", 1), "--json"});
+  EXPECT_EQ(fogbench({"watch"}).status, 0);
+  const std::string started = stored("1")["started_at"];
+  const std::string ended = stored("1")["ended_at"];
+  daemon->signal(SIGTERM);
+  const std::string log = daemon->wait(30s).err;
+  const std::string after = hour(600);  // the bench's calendar runs faster
+  for (const std::string& date : {started, ended, log}) {
+    EXPECT_TRUE(date.starts_with(before) || date.starts_with(after)) << date;
+  }
+  EXPECT_EQ(log.substr(23, 2), "Z ") << log;
+}
+
+TEST_F(RecoveryTest, WithoutFileHandlesARunGoesOnAndNewClientsWait) {
+  const auto daemon = serve();
+  json({"run", procedure("long", 60), "--json"});
+  wait_for_points(3);
+  Process watching(command({"watch"}));
+  std::this_thread::sleep_for(300ms);
+  const std::string process = "/proc/" + std::to_string(daemon->id());
+  rlimit before{};
+  ASSERT_EQ(prlimit(daemon->id(), RLIMIT_NOFILE, nullptr, &before), 0);
+  rlimit none = before;
+  none.rlim_cur = 0;  // the lowest number that is free, so that no other is
+  while (fs::exists(fs::symlink_status(process + "/fd/" + std::to_string(none.rlim_cur)))) {
+    ++none.rlim_cur;
+  }
+  ASSERT_EQ(prlimit(daemon->id(), RLIMIT_NOFILE, &none, nullptr), 0);
+
+  const std::size_t points = points_in_order("1");
+  Process waiting(command({"status"}));
+  const double cpu_s = cpu_of_thread_s(process + "/task/" + std::to_string(daemon->id()));
+  std::this_thread::sleep_for(1500ms);
+  // The main thread serves the socket. One that does not wait takes a second of these.
+  EXPECT_LT(cpu_of_thread_s(process + "/task/" + std::to_string(daemon->id())) - cpu_s, 0.4);
+  EXPECT_GT(points_in_order("1"), points) << "the run goes on";
+  EXPECT_FALSE(waiting.wait_for_output("long", 0s)) << "nobody has been let in";
+
+  ASSERT_EQ(prlimit(daemon->id(), RLIMIT_NOFILE, &before, nullptr), 0);
+  const Finished waited = waiting.wait(30s);
+  EXPECT_EQ(waited.status, 0) << waited.err;
+  EXPECT_NE(waited.out.find("long"), std::string::npos) << waited.out;
+  EXPECT_EQ(fogbench({"watch"}).status, 0);
+  EXPECT_EQ(watching.wait(30s).status, 0) << "whoever was there was served all the time";
+  EXPECT_EQ(points_in_order("1"), 60U);
+  EXPECT_EQ(stored("1")["stream"]["frames_missing"], 0);
 }
 
 TEST_F(RecoveryTest, AThousandClientsThatPollDoNotDisturbARun) {
