@@ -30,7 +30,14 @@ Clock::WallTime SteadyClock::wall_now() const {
 }
 
 Clock::Duration SteadyClock::calendar_offset() const {
-  return speed_ == 1.0 ? calendar_() - wall_now() : Duration::zero();
+  if (speed_ != 1.0) return Duration::zero();
+  // Both at one moment: whoever was held up in between looks again.
+  constexpr std::chrono::milliseconds kOneMoment{100};
+  for (;;) {
+    const WallTime before = wall_now();
+    const WallTime calendar = calendar_();
+    if (wall_now() - before < kOneMoment) return calendar - before;
+  }
 }
 
 void SteadyClock::follow_calendar() {
@@ -45,7 +52,8 @@ void SteadyClock::sleep_until(Instant deadline) {
 }
 
 std::string utc_text(Clock::WallTime time) {
-  return fmt::format("{:%FT%TZ}", std::chrono::floor<std::chrono::seconds>(time));
+  // fmt 9 takes a time_point itself to be local time.
+  return fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::floor<std::chrono::seconds>(time)));
 }
 
 double seconds_of_utc(const std::string& text) {

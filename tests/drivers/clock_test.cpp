@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <ctime>
 #include <limits>
 
 namespace fogbench::drivers {
@@ -22,6 +24,15 @@ TEST(UtcText, IsIso8601ToTheSecond) {
   VirtualClock clock;
   clock.sleep_for(26h + 3min + 4999ms);
   EXPECT_EQ(utc_text(clock.wall_now()), "2026-01-02T02:03:04Z");
+}
+
+TEST(UtcText, DoesNotKnowTheMachinesZone) {
+  setenv("TZ", "AAA-5BBB,0/0,J365/25", 1);  // daylight saving all the year round
+  tzset();
+  const std::string text = utc_text(VirtualClock().wall_now());
+  unsetenv("TZ");
+  tzset();
+  EXPECT_EQ(text, "2026-01-01T00:00:00Z");
 }
 
 TEST(VirtualClock, WallTimeFollowsTheSteadyTime) {
