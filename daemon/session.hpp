@@ -102,6 +102,8 @@ class Session {
   Result<procedures::RunSummary> run(const PlannedProcedure& procedure,
                                      const std::string& operator_name = {});
   procedures::RunEngine& engine() { return *engine_; }
+  /// The bench's. Each run takes the machine's calendar over when it begins.
+  drivers::Clock& clock() { return *clock_; }
   /// Of the gyro's stream, on the thread of run().
   const drivers::StreamStatistics& stream() const { return bench_.gyro->statistics(); }
 

@@ -55,6 +55,31 @@ TEST(Session, RecordsIntoWhatItsCallerKeeps) {
   EXPECT_EQ(record.instrument_records.size(), 6U);
 }
 
+TEST(Session, EachRunsDatesFollowTheMachinesClockAtItsStart) {
+  const auto ready = tests::source_tree() / "config";
+  auto setup = load_setup(
+      {(ready / "benches/simulated.json").string(), (ready / "scenarios/clean.json").string()});
+  ASSERT_TRUE(setup) << setup.error().message;
+  const auto planned = plan_procedure((ready / "procedures/static-record.json").string(),
+                                      setup->bench, {{"duration_s", 10.0}, {"average_s", 5.0}});
+  ASSERT_TRUE(planned) << planned.error().message;
+  test::MemoryRecorder record;
+  SimulatedOperator person;
+  const auto session = Session::open(std::move(*setup), 3, record, Speed::kMaximum, person);
+  ASSERT_TRUE(session) << session.error().message;
+  ASSERT_TRUE((*session)->run(*planned));
+  auto* clock = dynamic_cast<drivers::VirtualClock*>(&(*session)->clock());
+  ASSERT_NE(clock, nullptr);
+  clock->set_calendar(-std::chrono::hours{24});  // between two runs
+  ASSERT_TRUE((*session)->run(*planned));
+  ASSERT_EQ(record.headers.size(), 2U);
+  const double apart_s = drivers::seconds_of_utc(record.headers[1].started_at) -
+                         drivers::seconds_of_utc(record.headers[0].started_at);
+  EXPECT_GT(apart_s, -86400.0);
+  EXPECT_LT(apart_s, -82800.0);
+  EXPECT_FALSE(record.has_event("clock")) << "neither run saw it";
+}
+
 TEST(Session, ABenchIsSimulatedOrRealAsAWhole) {
   const auto ready = tests::source_tree() / "config/benches";
   auto simulated = config::load_bench(ready / "simulated.json");
