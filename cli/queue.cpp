@@ -44,7 +44,7 @@ Result<ExitStatus> run_queue(const QueueOptions& options) {
   }
   fmt::print("{}", table.empty() ? "The queue is empty.\n" : table.text());
   if (queue->value("held", false)) {
-    fmt::print("Held, since a run did not complete: fogbench resume goes on.\n");
+    fmt::print("Held: {}. fogbench resume goes on.\n", queue->value("because", ""));
   }
   return ExitStatus::kDone;
 }

@@ -96,11 +96,7 @@ std::string status_text(const json& status) {
         number, plain(at(interrupted, "procedure")), gyro_text(interrupted),
         points_text(at(interrupted, "points")), number, number);
   }
-  const json& queue = at(status, "queue");
-  if (real(at(queue, "jobs")) > 0) {
-    out += fmt::format("{} in the queue{}\n", plain(at(queue, "jobs")),
-                       at(queue, "held") == true ? ", held (fogbench resume)" : "");
-  }
+  out += queue_text(status);
   const json& prompt = at(status, "prompt");
   if (prompt.is_object()) {
     out += fmt::format("prompt {}: {} (fogbench answer yes|no)\n", plain(at(prompt, "prompt")),
@@ -122,6 +118,16 @@ std::string status_text(const json& status) {
                        plain(at(events[i], "severity")), plain(at(events[i], "message")));
   }
   return out;
+}
+
+std::string queue_text(const json& status) {
+  const json& queue = at(status, "queue");
+  if (real(at(queue, "jobs")) == 0) return "";
+  const std::string held =
+      at(queue, "held") == true
+          ? fmt::format(", held: {} (fogbench resume goes on)", plain(at(queue, "because")))
+          : "";
+  return fmt::format("{} in the queue{}\n", plain(at(queue, "jobs")), held);
 }
 
 std::string gyro_text(const json& job) {

@@ -12,6 +12,9 @@ namespace fogbench::cli {
 /// another version.
 std::string status_text(const nlohmann::json& status);
 
+/// "2 in the queue", with the reason why they are held, as a line; nothing when it is empty.
+std::string queue_text(const nlohmann::json& status);
+
 /// ", gyro FOG-42", of a run or a job; empty when nobody named one.
 std::string gyro_text(const nlohmann::json& job);
 

@@ -70,7 +70,7 @@ Result<ExitStatus> run_watch(const WatchOptions& options) {
       return ExitStatus::kDone;
     }
     if (const Status outcome = outcome_of(*last); !outcome) return outcome.error();
-    if (!options.json) fmt::print("{}\n", ended_text(*last));
+    if (!options.json) fmt::print("{}\n{}", ended_text(*last), queue_text(*status));
     return ExitStatus::kDone;
   }
 }

@@ -40,7 +40,7 @@ std::variant<std::uint64_t, RpcError> RunDesk::enqueue(Order order, PlannedProce
     return wrong_state(fmt::format("a job takes up run {} already", order.takes_up));
   }
   // Nothing waits behind what failed: whoever asks now wants this run.
-  if (queue_.empty() || order.takes_up != 0) view_.held = false;
+  if (queue_.empty() || order.takes_up != 0) view_.held_because.clear();
   const auto place = order.takes_up != 0 ? queue_.begin() : queue_.end();
   queue_.insert(place, {++jobs_ever_, std::move(order), std::move(procedure), by});
   ++queue_changes_;
@@ -59,7 +59,7 @@ RunDesk::Refused RunDesk::remove(std::uint64_t job, const Person& /*by*/) {
   }
   queue_.erase(found);
   ++queue_changes_;
-  if (queue_.empty()) view_.held = false;
+  if (queue_.empty()) view_.held_because.clear();
   view_.jobs = queue_.size();
   changed();
   return {};
@@ -88,8 +88,8 @@ RunDesk::Refused RunDesk::resume(const Person& by) {
     note("resume", by);
     return {};
   }
-  if (!view_.held) return wrong_state(kNothingRuns);
-  view_.held = false;
+  if (view_.held_because.empty()) return wrong_state(kNothingRuns);
+  view_.held_because.clear();
   changed();
   job_or_close_.notify_one();
   return {};
@@ -189,7 +189,7 @@ void RunDesk::withdraw_offer() {
 
 void RunDesk::hold() {
   const Lock lock(mutex_);
-  view_.held = !queue_.empty();
+  if (!queue_.empty()) view_.held_because = "the daemon was started anew";
   changed();
 }
 
@@ -216,7 +216,8 @@ void RunDesk::attach(procedures::RunEngine& engine) {
 std::optional<Job> RunDesk::next_job() {
   std::unique_lock lock(mutex_);
   pulse_.waits_for_job = true;
-  job_or_close_.wait(lock, [this] { return view_.closing || (!queue_.empty() && !view_.held); });
+  job_or_close_.wait(
+      lock, [this] { return view_.closing || (!queue_.empty() && view_.held_because.empty()); });
   pulse_.waits_for_job = false;
   if (view_.closing) {
     deserted_ = true;
@@ -325,8 +326,14 @@ void RunDesk::run_ended(const Result<procedures::RunSummary>& summary) {
   ended.safe_state_reached = !end_ || end_->safe_state_reached;
   ended.outcome = name_of(summary ? summary->end.outcome : procedures::RunOutcome::kFailed);
   ended.reason = summary ? summary->end.reason : summary.error().message;
-  if (ended.outcome != name_of(procedures::RunOutcome::kCompleted) && !queue_.empty()) {
-    view_.held = true;
+  if (!queue_.empty()) {
+    if (ended.outcome != name_of(procedures::RunOutcome::kCompleted)) {
+      view_.held_because = fmt::format("the last run was not completed ({})", ended.outcome);
+    } else if (const std::string& next = queue_.front().procedure.gyro;
+               next != ended.gyro && !next.empty() && !ended.gyro.empty()) {
+      view_.held_because =
+          fmt::format("put gyro {} on the bench, in place of {}", next, ended.gyro);
+    }
   }
   ++view_.totals.runs[ended.outcome];
   view_.run.reset();

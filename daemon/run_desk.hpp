@@ -8,7 +8,8 @@
 //
 // What a run asks of the engine (pause, resume, abort) reaches it between run_begun and run_ending
 // only, so that an order for one run never falls on the next. After a run that was aborted or
-// failed the queue is held: a bench that has just failed heats up again when a person says so.
+// failed the queue is held: a bench that has just failed heats up again when a person says so. So
+// it is before a job for another gyro, which somebody must put on the bench.
 
 #include <condition_variable>
 #include <cstdint>
@@ -105,7 +106,7 @@ struct DeskView {
   std::optional<EndedRun> last_run;
   std::optional<InterruptedRun> interrupted;  ///< until it is taken up or given up
   std::size_t jobs = 0;
-  bool held = false;
+  std::string held_because;  ///< why the queue waits for a person; empty: it does not
   bool closing = false;
   BenchTotals totals;
 };

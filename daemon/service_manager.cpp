@@ -26,7 +26,8 @@ std::string service_status(const DeskView& view) {
   constexpr std::size_t kLongest = 200;
   if (!view.run) {
     if (view.jobs == 0) return "idle";
-    return fmt::format("idle, {} in the queue{}", view.jobs, view.held ? ", held" : "");
+    return fmt::format("idle, {} in the queue{}", view.jobs,
+                       view.held_because.empty() ? "" : ", held");
   }
   const procedures::Progress& now = view.run->progress;
   std::string says = fmt::format(

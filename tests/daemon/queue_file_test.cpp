@@ -54,7 +54,7 @@ TEST_F(QueueFileTest, WhatWaitsOutlivesTheDaemonAndIsHeld) {
   EXPECT_EQ(waiting[0].first.set, desk.waiting().orders[0].first.set);
   EXPECT_EQ(waiting[1].second.name, "alice");
   EXPECT_EQ(waiting[1].second.uid, 1000U);
-  EXPECT_TRUE(next.view().held) << "a bench that comes back waits for a person";
+  EXPECT_EQ(next.view().held_because, "the daemon was started anew");
 }
 
 TEST_F(QueueFileTest, EachJobKeepsItsGyroAndOneWithoutTakesTheNewDaemons) {

@@ -140,16 +140,22 @@ TEST_F(RunDeskTest, AnOrderForOneRunNeverFallsOnTheNext) {
   EXPECT_FALSE(desk_.abort(bob_));
   const DeskView held = wait_for_end_of(first);
   EXPECT_EQ(held.last_run->outcome, "aborted");
-  EXPECT_TRUE(held.held) << "nothing begins by itself after an abort";
+  EXPECT_EQ(held.held_because, "the last run was not completed (aborted)");
   EXPECT_EQ(held.last_run->gyro, "SIM-FOG-1");
   ASSERT_EQ(desk_.queue().size(), 1U);
   EXPECT_EQ(desk_.queue()[0].gyro, "FOG-42");
 
+  bench_.gyro.serial_number = "FOG-43";
+  const std::uint64_t third = enqueue(kMeasures);
   EXPECT_FALSE(desk_.resume(alice_));
-  EXPECT_EQ(wait_for_end_of(second).last_run->outcome, "completed");
+  const DeskView changed = wait_for_end_of(second);
+  EXPECT_EQ(changed.last_run->outcome, "completed");
+  EXPECT_EQ(changed.held_because, "put gyro FOG-43 on the bench, in place of FOG-42");
+  EXPECT_FALSE(desk_.resume(alice_));
+  EXPECT_EQ(wait_for_end_of(third).held_because, "");
   leave();
   EXPECT_TRUE(record_.has_event("abort, by bob"));
-  EXPECT_EQ(record_.ends.size(), 2U);
+  EXPECT_EQ(record_.ends.size(), 3U);
   EXPECT_EQ(record_.headers.at(0).gyro_serial_number, "SIM-FOG-1");
   EXPECT_EQ(record_.headers.at(1).gyro_serial_number, "FOG-42");
 }

@@ -77,8 +77,14 @@ TEST_F(RecoveryTest, AfterTheDeathOfTheDaemonARunIsTakenUpAndTheQueueIsThere) {
   expect_refused(fogbench({"resume", "7"}), 3, "no run 7");
   EXPECT_NE(fogbench({"resume", "1"}).out.find("Job 2 takes up run 1, gyro FOG-42:"),
             std::string::npos);
-  EXPECT_EQ(fogbench({"watch"}).status, 0);
+  const Finished taken_up = fogbench({"watch"});
+  EXPECT_EQ(taken_up.status, 0);
+  EXPECT_NE(taken_up.out.find("held: put gyro FOG-43 on the bench, in place of FOG-42"),
+            std::string::npos)
+      << taken_up.out;
   EXPECT_TRUE(status()["interrupted"].is_null());
+  EXPECT_EQ(fogbench({"resume"}).status, 0);
+  EXPECT_EQ(fogbench({"watch"}).status, 0);
   const auto runs = json({"runs", "--store", store(), "--json"})["runs"];
   ASSERT_EQ(runs.size(), 3U);
   EXPECT_EQ(runs[0]["outcome"], "interrupted");
