@@ -176,7 +176,7 @@ TEST_F(ControlMethodsTest, NewsHaveTheTemplatesShapeAndComeOncePerChange) {
   const json news = json::parse(methods_->news(operator_));
   EXPECT_EQ(news.at("method"), "status");
   EXPECT_EQ(news.at("params"), json::parse(R"({"now": "idle", "n": 0, "x": null,
-            "list": [{"jobs": 0, "held": false}, 7, "plain"]})"));
+            "list": [{"jobs": 0, "held": false, "because": ""}, 7, "plain"]})"));
   EXPECT_EQ(methods_->news(operator_), "") << "nothing has changed";
   desk_.close({"test", 0});
   EXPECT_NE(methods_->news(operator_), "");

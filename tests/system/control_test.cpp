@@ -24,7 +24,7 @@ constexpr uid_t kStranger = 65534;  // nobody
 TEST_F(ControlTest, RunsWhatIsQueuedAndSaysHowItEnded) {
   const auto daemon = serve();
   EXPECT_EQ(status()["state"], "idle");
-  const auto queued = json({"run", procedure("first", 6, "Ready?"), "--json"});
+  const auto queued = json({"run", procedure("first", 6, "Ready?"), "--gyro", "FOG-42", "--json"});
   EXPECT_EQ(queued["job"], 1);
   EXPECT_EQ(queued["steps"], 8);
   wait_for_prompt();
