@@ -51,9 +51,8 @@ Outcome status(RunDesk& desk, const json&) {
 
 Outcome queue(RunDesk& desk, const json&) {
   const DeskView view = desk.view();
-  return ordered_json{{"held", !view.held_because.empty()},
-                      {"because", view.held_because},
-                      {"jobs", to_json(desk.queue())}};
+  return ordered_json{
+      {"held", view.held()}, {"because", view.held_because}, {"jobs", to_json(desk.queue())}};
 }
 
 Outcome runs(RunDesk& desk, const json&) {
@@ -103,7 +102,7 @@ Outcome enqueue(RunDesk& desk, const Setup& setup, const std::filesystem::path& 
   const auto queued = desk.enqueue(std::move(order), std::move(*planned), by);
   if (const auto* refused = std::get_if<RpcError>(&queued)) return *refused;
   answer["job"] = std::get<std::uint64_t>(queued);
-  answer["held"] = !desk.view().held_because.empty();
+  answer["held"] = desk.view().held();
   return answer;
 }
 

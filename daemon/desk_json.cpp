@@ -101,19 +101,17 @@ ordered_json to_json(const DeskView& view) {
                       {"severity", event.severity},
                       {"message", short_text(event.message)}});
   }
-  return {
-      {"protocol", kProtocolVersion},
-      {"state", state_of(view)},
-      {"stopping", view.closing},
-      {"run", or_null(view.run)},
-      {"prompt", question},
-      {"values", or_null(view.values)},
-      {"point", or_null(view.point)},
-      {"events", events},
-      {"queue",
-       {{"jobs", view.jobs}, {"held", !view.held_because.empty()}, {"because", view.held_because}}},
-      {"last_run", or_null(view.last_run)},
-      {"interrupted", or_null(view.interrupted)}};
+  return {{"protocol", kProtocolVersion},
+          {"state", state_of(view)},
+          {"stopping", view.closing},
+          {"run", or_null(view.run)},
+          {"prompt", question},
+          {"values", or_null(view.values)},
+          {"point", or_null(view.point)},
+          {"events", events},
+          {"queue", {{"jobs", view.jobs}, {"held", view.held()}, {"because", view.held_because}}},
+          {"last_run", or_null(view.last_run)},
+          {"interrupted", or_null(view.interrupted)}};
 }
 
 ordered_json to_json(const std::vector<QueuedJob>& queue) {

@@ -108,8 +108,7 @@ std::string metrics_text(const std::string& bench, const DeskView& view,
     out.sample("state", state, state == state_of(view) ? 1.0 : 0.0);
   }
   out.single("queue_jobs", "Runs that wait", static_cast<double>(view.jobs));
-  out.single("queue_held", "Whether the queue waits for a person",
-             view.held_because.empty() ? 0.0 : 1.0);
+  out.single("queue_held", "Whether the queue waits for a person", view.held() ? 1.0 : 0.0);
   out.single("prompt_waiting", "Whether the run waits for an answer", view.question ? 1.0 : 0.0);
   if (view.run) add_present_run(out, *view.run);
   if (view.run && view.values) add_values(out, *view.values);

@@ -40,9 +40,10 @@ std::variant<std::uint64_t, RpcError> RunDesk::enqueue(Order order, PlannedProce
     return wrong_state(fmt::format("a job takes up run {} already", order.takes_up));
   }
   // Nothing waits behind what failed: whoever asks now wants this run.
-  if (queue_.empty() || order.takes_up != 0) view_.held_because.clear();
+  if (queue_.empty() || order.takes_up != 0) hold_.clear();
   const auto place = order.takes_up != 0 ? queue_.begin() : queue_.end();
   queue_.insert(place, {++jobs_ever_, std::move(order), std::move(procedure), by});
+  show_hold();
   ++queue_changes_;
   view_.jobs = queue_.size();
   changed();
@@ -59,7 +60,8 @@ RunDesk::Refused RunDesk::remove(std::uint64_t job, const Person& /*by*/) {
   }
   queue_.erase(found);
   ++queue_changes_;
-  if (queue_.empty()) view_.held_because.clear();
+  if (queue_.empty()) hold_.clear();
+  show_hold();
   view_.jobs = queue_.size();
   changed();
   return {};
@@ -88,8 +90,9 @@ RunDesk::Refused RunDesk::resume(const Person& by) {
     note("resume", by);
     return {};
   }
-  if (view_.held_because.empty()) return wrong_state(kNothingRuns);
-  view_.held_because.clear();
+  if (!view_.held()) return wrong_state(kNothingRuns);
+  hold_.clear();
+  show_hold();
   changed();
   job_or_close_.notify_one();
   return {};
@@ -164,6 +167,13 @@ void RunDesk::offer(InterruptedRun run) {
   changed();
 }
 
+void RunDesk::show_hold() {
+  view_.held_because = hold_;
+  if (hold_.empty() || queue_.empty() || queue_.front().procedure.gyro.empty()) return;
+  view_.held_because +=
+      fmt::format(", the next needs gyro {} on the bench", queue_.front().procedure.gyro);
+}
+
 bool RunDesk::takes_up(std::int64_t run) const {
   return (starting_ && starting_->first.takes_up == run) ||
          std::any_of(queue_.begin(), queue_.end(),
@@ -189,7 +199,8 @@ void RunDesk::withdraw_offer() {
 
 void RunDesk::hold() {
   const Lock lock(mutex_);
-  if (!queue_.empty()) view_.held_because = "the daemon was started anew";
+  if (!queue_.empty()) hold_ = "the daemon was started anew";
+  show_hold();
   changed();
 }
 
@@ -216,8 +227,7 @@ void RunDesk::attach(procedures::RunEngine& engine) {
 std::optional<Job> RunDesk::next_job() {
   std::unique_lock lock(mutex_);
   pulse_.waits_for_job = true;
-  job_or_close_.wait(
-      lock, [this] { return view_.closing || (!queue_.empty() && view_.held_because.empty()); });
+  job_or_close_.wait(lock, [this] { return view_.closing || (!queue_.empty() && !view_.held()); });
   pulse_.waits_for_job = false;
   if (view_.closing) {
     deserted_ = true;
@@ -328,12 +338,12 @@ void RunDesk::run_ended(const Result<procedures::RunSummary>& summary) {
   ended.reason = summary ? summary->end.reason : summary.error().message;
   if (!queue_.empty()) {
     if (ended.outcome != name_of(procedures::RunOutcome::kCompleted)) {
-      view_.held_because = fmt::format("the last run was not completed ({})", ended.outcome);
+      hold_ = fmt::format("the last run was not completed ({})", ended.outcome);
     } else if (const std::string& next = queue_.front().procedure.gyro;
                next != ended.gyro && !next.empty() && !ended.gyro.empty()) {
-      view_.held_because =
-          fmt::format("put gyro {} on the bench, in place of {}", next, ended.gyro);
+      hold_ = fmt::format("the last run was for gyro {}", ended.gyro);
     }
+    show_hold();
   }
   ++view_.totals.runs[ended.outcome];
   view_.run.reset();

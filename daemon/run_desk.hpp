@@ -107,6 +107,7 @@ struct DeskView {
   std::optional<InterruptedRun> interrupted;  ///< until it is taken up or given up
   std::size_t jobs = 0;
   std::string held_because;  ///< why the queue waits for a person; empty: it does not
+  bool held() const { return !held_because.empty(); }
   bool closing = false;
   BenchTotals totals;
 };
@@ -190,6 +191,8 @@ class RunDesk {
   /// All with the mutex held.
   void note(const std::string& action, const Person& by);
   bool takes_up(std::int64_t run) const;
+  /// What is seen of a hold: its cause, and which gyro the job needs that would begin now.
+  void show_hold();
   void changed() { ++view_.version; }
 
   mutable std::mutex mutex_;
@@ -199,6 +202,7 @@ class RunDesk {
   bool deserted_ = false;
   bool engine_runs_ = false;  ///< between run_begun and run_ending
   std::deque<Job> queue_;
+  std::string hold_;  ///< why nothing begins until somebody resumes; empty: it does
   std::optional<std::pair<Order, Person>> starting_;  ///< taken, and no run on record yet
   std::uint64_t queue_changes_ = 0;
   std::uint64_t jobs_ever_ = 0, prompts_ever_ = 0;

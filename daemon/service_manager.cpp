@@ -26,8 +26,7 @@ std::string service_status(const DeskView& view) {
   constexpr std::size_t kLongest = 200;
   if (!view.run) {
     if (view.jobs == 0) return "idle";
-    return fmt::format("idle, {} in the queue{}", view.jobs,
-                       view.held_because.empty() ? "" : ", held");
+    return fmt::format("idle, {} in the queue{}", view.jobs, view.held() ? ", held" : "");
   }
   const procedures::Progress& now = view.run->progress;
   std::string says = fmt::format(

@@ -140,7 +140,8 @@ TEST_F(RunDeskTest, AnOrderForOneRunNeverFallsOnTheNext) {
   EXPECT_FALSE(desk_.abort(bob_));
   const DeskView held = wait_for_end_of(first);
   EXPECT_EQ(held.last_run->outcome, "aborted");
-  EXPECT_EQ(held.held_because, "the last run was not completed (aborted)");
+  EXPECT_EQ(held.held_because,
+            "the last run was not completed (aborted), the next needs gyro FOG-42 on the bench");
   EXPECT_EQ(held.last_run->gyro, "SIM-FOG-1");
   ASSERT_EQ(desk_.queue().size(), 1U);
   EXPECT_EQ(desk_.queue()[0].gyro, "FOG-42");
@@ -150,9 +151,14 @@ TEST_F(RunDeskTest, AnOrderForOneRunNeverFallsOnTheNext) {
   EXPECT_FALSE(desk_.resume(alice_));
   const DeskView changed = wait_for_end_of(second);
   EXPECT_EQ(changed.last_run->outcome, "completed");
-  EXPECT_EQ(changed.held_because, "put gyro FOG-43 on the bench, in place of FOG-42");
+  EXPECT_EQ(changed.held_because,
+            "the last run was for gyro FOG-42, the next needs gyro FOG-43 on the bench");
+  bench_.gyro.serial_number = "FOG-44";
+  const std::uint64_t fourth = enqueue(kMeasures);
+  EXPECT_FALSE(desk_.remove(third, alice_));
+  EXPECT_THAT(desk_.view().held_because, HasSubstr("FOG-44")) << "never a gyro that nobody wants";
   EXPECT_FALSE(desk_.resume(alice_));
-  EXPECT_EQ(wait_for_end_of(third).held_because, "");
+  EXPECT_EQ(wait_for_end_of(fourth).held_because, "");
   leave();
   EXPECT_TRUE(record_.has_event("abort, by bob"));
   EXPECT_EQ(record_.ends.size(), 3U);

@@ -79,7 +79,7 @@ TEST_F(RecoveryTest, AfterTheDeathOfTheDaemonARunIsTakenUpAndTheQueueIsThere) {
             std::string::npos);
   const Finished taken_up = fogbench({"watch"});
   EXPECT_EQ(taken_up.status, 0);
-  EXPECT_NE(taken_up.out.find("held: put gyro FOG-43 on the bench, in place of FOG-42"),
+  EXPECT_NE(taken_up.out.find("held: the last run was for gyro FOG-42, the next needs gyro FOG-43"),
             std::string::npos)
       << taken_up.out;
   EXPECT_TRUE(status()["interrupted"].is_null());
