@@ -21,6 +21,8 @@ constexpr ExitStatus exit_status(ErrorCode code) {
     case ErrorCode::kLimit:
       return ExitStatus::kBadInput;
     case ErrorCode::kDevice:
+    case ErrorCode::kBusy:
+    case ErrorCode::kHeld:
     case ErrorCode::kUnplugged:
     case ErrorCode::kTimeout:
     case ErrorCode::kStale:

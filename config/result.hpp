@@ -17,6 +17,8 @@ enum class ErrorCode {
   kBadInput,   ///< a file, a key or a table is wrong (exit 3)
   kLimit,      ///< a request lies outside the bench's or an instrument's limits (exit 3)
   kDevice,     ///< an instrument refused or reported an error (exit 4)
+  kBusy,       ///< an instrument asks to be asked again later (exit 4)
+  kHeld,       ///< an instrument or a run log belongs to another process (exit 4)
   kUnplugged,  ///< an instrument is gone from where it was connected (exit 4)
   kTimeout,    ///< an instrument did not answer, or a quantity did not settle, in time (exit 4)
   kStale,      ///< a reading is older than it may be, or was repeated (exit 4)
