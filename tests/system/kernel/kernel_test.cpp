@@ -149,13 +149,18 @@ TEST_F(RealKernel, ASweepIsInterruptedByAPulledPlugAndBeginsAnew) {
                                      DoubleNear(200.0, 2.0), DoubleNear(0.0, 2.0)));
 }
 
-TEST_F(RealKernel, ADaemonThatIsKilledInASweepLeavesCurrentThatTheNextOneSwitchesOff) {
+TEST_F(RealKernel, ADaemonThatIsKilledLeavesCurrentThatTheNextSwitchesOffWhateverElseIsMissing) {
   EXPECT_EQ(result("resumed.status"), "0\n") << result("resumed.log");
   // From the kill to the safe state, read back from both supplies, on the emulated machine.
   std::istringstream times(result("killed.times"));
   double killed_s = 0.0, safe_s = 0.0;
   ASSERT_TRUE(times >> killed_s >> safe_s);
   EXPECT_LT(safe_s - killed_s, 15.0) << result("resumed.log");
+  // While the magnetometer is not there.
+  EXPECT_THAT(result("resumed.log"),
+              HasSubstr("safe state: coil_horizontal off, read back; coil_vertical off, read back; "
+                        "thermostat off, read back"));
+  EXPECT_THAT(result("waiting"), HasSubstr("waiting: magnetometer: HID device"));
 
   const auto before = run("killed"), after = run("killed", "2");
   EXPECT_EQ(before["outcome"], "interrupted") << result("resume");
