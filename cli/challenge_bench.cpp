@@ -89,12 +89,13 @@ Result<std::vector<procedures::Point>> ChallengeBench::measure(
   daemon::Setup setup = setup_;
   setup.scenario = scenario;
   setup.scenario_json.clear();
+  daemon::AbortOnSignal abort_on_signal;
   daemon::SimulatedOperator person;
   PointRecord record;
   auto session =
       daemon::Session::open(std::move(setup), seed_, record, daemon::Speed::kMaximum, person);
   if (!session) return session.error();
-  const daemon::AbortOnSignal abort_on_signal((*session)->engine());
+  abort_on_signal.attach(**session);
   ProgressLine progress;
   (*session)->engine().on_progress([&](const procedures::Progress& now) { progress.show(now); });
   const auto summary = (*session)->run(plan_);

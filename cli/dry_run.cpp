@@ -105,11 +105,12 @@ Result<ExitStatus> run_dry_run(const DryRunOptions& options) {
   if (!store) return store.error();
   const std::uint64_t seed = options.seed.value_or(daemon::random_seed());
 
+  daemon::AbortOnSignal abort_on_signal;
   daemon::SimulatedOperator person;
   auto session = daemon::Session::open(std::move(*setup), seed, *store, options.speed, person);
   if (!session) return session.error();
   procedures::RunEngine& engine = (*session)->engine();
-  const daemon::AbortOnSignal abort_on_signal(engine);
+  abort_on_signal.attach(**session);
   if (!options.json) print_heading(planned->plan, options, bench, seed);
   std::fflush(stdout);
 

@@ -2,6 +2,8 @@
 // command that it names and turns an error into one line and an exit status.
 
 #include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
 
 #include <cstdio>
 #include <exception>
@@ -113,6 +115,9 @@ int run(int argc, char** argv) {
 
 // Nothing of ours throws; what a library may still throw ends as one line.
 int main(int argc, char** argv) {
+  // Standard output is for results.
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("fogbench"));
+  spdlog::set_pattern("fogbench: %v");
   try {
     return run(argc, argv);
   } catch (const std::system_error&) {  // fmt::print, when the disk is full

@@ -78,7 +78,9 @@ std::string status_text(const json& status) {
       out += "a pause has been asked for: before the next divisible step\n";
     }
   } else {
-    out += plain(at(status, "state")) + ": nothing is running\n";
+    const bool waits = at(status, "state") == "waiting";
+    out += fmt::format("{}: {}\n", plain(at(status, "state")),
+                       waits ? plain(at(status, "waits_for")) : "nothing is running");
     const json& last = at(status, "last_run");
     if (last.is_object()) {
       out += "last: " + ended_text(last) + "\n";

@@ -1,55 +1,65 @@
 #include "daemon/abort_on_signal.hpp"
 
+#include <poll.h>
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <cassert>
-#include <csignal>
+#include <cerrno>
 
 #include "config/exit_status.hpp"
 
 namespace fogbench::daemon {
-namespace {
 
-// A signal handler reaches nothing but globals.
-std::atomic<procedures::RunEngine*> g_engine{nullptr};
-std::atomic<bool> g_asked{false};
-static_assert(std::atomic<procedures::RunEngine*>::is_always_lock_free);
-
-void on_signal(int) {
-  if (g_asked.exchange(true)) _exit(static_cast<int>(ExitStatus::kFailed));
-  if (procedures::RunEngine* engine = g_engine) engine->request_abort();
+void end_at_once(const std::string& why, Session* session) {
+  const bool sent = session != nullptr && session->send_last_zero();
+  spdlog::critical(
+      "{}: ending at once, the bench is NOT in its safe state{}; a new start begins with it", why,
+      sent ? " (0 A was sent to the coils, and nobody waited for an answer)" : "");
+  spdlog::default_logger()->flush();
+  _exit(static_cast<int>(ExitStatus::kFailed));
 }
 
-}  // namespace
-
-AbortOnSignal::AbortOnSignal(procedures::RunEngine& engine) {
-  assert(g_engine == nullptr);
-  g_engine = &engine;
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  // Nobody reads the output any more: a failed write must not end the process in mid-run.
-  std::signal(SIGPIPE, SIG_IGN);
-  // A terminal that is closed ends the run like the others, unless nohup asked to survive it.
-  struct sigaction before {};
-  sigaction(SIGHUP, nullptr, &before);
-  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+AbortOnSignal::AbortOnSignal() : signals_(clock_), end_(eventfd(0, EFD_CLOEXEC)) {
+  thread_ = std::thread([this] { watch(); });
+  pthread_setname_np(thread_.native_handle(), "signals");
 }
 
 AbortOnSignal::~AbortOnSignal() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-  struct sigaction now {};
-  sigaction(SIGHUP, nullptr, &now);
-  if (now.sa_handler == on_signal) std::signal(SIGHUP, SIG_DFL);
-  g_engine = nullptr;
-  g_asked = false;
+  eventfd_write(end_.get(), 1);
+  thread_.join();
 }
 
-bool AbortOnSignal::asked() {
-  return g_asked;
+void AbortOnSignal::attach(Session& session) {
+  const std::lock_guard lock(mutex_);
+  session_ = &session;
+  if (asked_) session.engine().request_abort();
+}
+
+void AbortOnSignal::watch() {
+  pollfd ready[] = {{signals_.descriptor(), POLLIN, 0}, {end_.get(), POLLIN, 0}};
+  while (::poll(ready, 2, -1) >= 0 || errno == EINTR) {
+    while (const auto signal = signals_.next()) take(*signal);
+    if (ready[1].revents != 0) return;
+  }
+}
+
+void AbortOnSignal::take(const StopSignals::Signal& signal) {
+  const std::lock_guard lock(mutex_);
+  switch (signal.means) {
+    case StopSignals::Means::kAbort:
+      asked_ = true;
+      spdlog::info("{}: stopping; again after {} s ends at once", signal.name,
+                   drivers::to_seconds(StopSignals::kPatience));
+      if (session_ != nullptr) session_->engine().request_abort();
+      return;
+    case StopSignals::Means::kSameEvent:
+      spdlog::info("{}: stopping already", signal.name);
+      return;
+    case StopSignals::Means::kForcedEnd:
+      end_at_once("a second signal, " + signal.name, session_);
+  }
 }
 
 }  // namespace fogbench::daemon

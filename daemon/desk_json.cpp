@@ -85,6 +85,7 @@ ordered_json or_null(const std::optional<T>& value) {
 }  // namespace
 
 std::string_view state_of(const DeskView& view) {
+  if (!view.bench_waits_for.empty()) return "waiting";
   if (!view.run) return "idle";
   // The instruments are being identified, which is no state of the engine.
   if (view.run->run == 0) return "starting";
@@ -104,6 +105,7 @@ ordered_json to_json(const DeskView& view) {
   return {{"protocol", kProtocolVersion},
           {"state", state_of(view)},
           {"stopping", view.closing},
+          {"waits_for", short_text(view.bench_waits_for)},
           {"run", or_null(view.run)},
           {"prompt", question},
           {"values", or_null(view.values)},

@@ -33,8 +33,11 @@ ManualText manual_text() {
       "Without a procedure it serves the control socket: it brings the bench to its safe state "
       "and runs what operators queue with fogbench run. With procedures it runs them in the "
       "foreground, one after the other, and ends. One SIGTERM, SIGINT or SIGHUP aborts the run "
-      "to the safe state and ends the daemon; a second one ends it at once and leaves the bench "
-      "as it is. As the service fogbenchd.service it is configured in /etc/default/fogbenchd.",
+      "to the safe state and ends the daemon; another one, 3 s later or more, ends it at once: 0 A "
+      "is sent to the coils then, and nobody waits for it. While an instrument is missing a "
+      "serving daemon switches off what it can reach and goes on trying; in the foreground it "
+      "tries three times, then ends. As the service fogbenchd.service it is configured in "
+      "/etc/default/fogbenchd.",
       {{"FOGBENCH_STORE", "The run log to write, unless --store is given."},
        {"FOGBENCH_SOCKET", "The control socket to serve, unless --socket is given."},
        {"FOGBENCH_CONFIG_DIR", "Where the ready files are, instead of beside the program."},
@@ -135,8 +138,9 @@ Status run(const DaemonOptions& options) {
     return serve(std::move(*setup), seed, store, options.speed, options.serve);
   }
 
+  AbortOnSignal abort_on_signal;
   SimulatedOperator obedient;
-  TerminalOperator at_terminal(STDIN_FILENO, stderr, AbortOnSignal::asked);
+  TerminalOperator at_terminal(STDIN_FILENO, stderr, [&] { return abort_on_signal.asked(); });
   drivers::Operator& person =
       setup->simulated ? static_cast<drivers::Operator&>(obedient) : at_terminal;
   const std::string bench = setup->bench.name;
@@ -146,7 +150,7 @@ Status run(const DaemonOptions& options) {
   spdlog::info("bench {} is in its safe state; run log {}{}", bench, store.string(),
                simulated ? fmt::format(", seed {}", seed) : "");
   procedures::RunEngine& engine = (*session)->engine();
-  const AbortOnSignal abort_on_signal(engine);
+  abort_on_signal.attach(**session);
   std::size_t step = 0;
   engine.on_progress([&step](const procedures::Progress& now) {
     if (now.step + 1 == step) return;
@@ -157,7 +161,7 @@ Status run(const DaemonOptions& options) {
     spdlog::info("{} at {:.1f} s: {:.4f} deg/h", point.segment, point.time_s, point.rate_deg_per_h);
   });
   for (const PlannedProcedure& procedure : planned) {
-    if (AbortOnSignal::asked()) return Error{ErrorCode::kAborted, "aborted on request"};
+    if (abort_on_signal.asked()) return Error{ErrorCode::kAborted, "aborted on request"};
     step = 0;
     const auto summary = (*session)->run(procedure, user_name(getuid()));
     if (!summary) return summary.error();

@@ -219,6 +219,18 @@ bool RunDesk::deserted() const {
   return deserted_;
 }
 
+void RunDesk::bench_waits_for(std::string what) {
+  const Lock lock(mutex_);
+  view_.bench_waits_for = std::move(what);
+  changed();
+}
+
+bool RunDesk::still_open() {
+  const Lock lock(mutex_);
+  ++pulse_.beats;
+  return !view_.closing;
+}
+
 void RunDesk::attach(procedures::RunEngine& engine) {
   const Lock lock(mutex_);
   engine_ = &engine;

@@ -109,6 +109,8 @@ struct DeskView {
   std::string held_because;  ///< why the queue waits for a person; empty: it does not
   bool held() const { return !held_because.empty(); }
   bool closing = false;
+  std::string
+      bench_waits_for;  ///< what is wrong while an instrument has not begun; empty: all have
   BenchTotals totals;
 };
 
@@ -166,6 +168,9 @@ class RunDesk {
   bool deserted() const;
 
   // --- The bench's thread.
+  void bench_waits_for(std::string what);
+  /// While it waits for something else than a job: it is alive. False when the desk is closed.
+  bool still_open();
   /// Before the first job; the engine must outlive the last.
   void attach(procedures::RunEngine& engine);
   /// Waits for one; nothing when the desk is closed.

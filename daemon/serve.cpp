@@ -4,18 +4,16 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <thread>
 
-#include "config/exit_status.hpp"
+#include "daemon/abort_on_signal.hpp"
 #include "daemon/access.hpp"
 #include "daemon/control_methods.hpp"
 #include "daemon/control_server.hpp"
@@ -28,41 +26,13 @@
 #include "daemon/run_desk.hpp"
 #include "daemon/run_log.hpp"
 #include "daemon/service_manager.hpp"
-#include "drivers/file_descriptor.hpp"
+#include "daemon/stop_signals.hpp"
 
 namespace fogbench::daemon {
 namespace {
 
-[[noreturn]] void end_at_once(const std::string& why) {
-  spdlog::critical(
-      "{}: ending at once, the bench is NOT in its safe state; a new start begins "
-      "with it",
-      why);
-  spdlog::default_logger()->flush();
-  _exit(static_cast<int>(ExitStatus::kFailed));
-}
-
-/// From here on the signals that end the process are read from the descriptor, in all threads that
-/// are started later, too.
-int take_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int number : {SIGTERM, SIGINT}) sigaddset(&signals, number);
-  struct sigaction hangup {};
-  sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);  // nohup asked to survive it
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a full disk
-  return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-}
-
-/// Empty when none has come.
-std::string next_signal(int descriptor) {
-  signalfd_siginfo info{};
-  if (read(descriptor, &info, sizeof info) != sizeof info) return {};
-  return fmt::format("SIG{}", sigabbrev_np(static_cast<int>(info.ssi_signo)));
-}
+/// How often a missing instrument is tried again, and how soon an end is noticed meanwhile.
+constexpr std::chrono::milliseconds kBetweenTries{1000}, kBetweenLooks{100};
 
 /// For as many connections as the server allows.
 void raise_descriptor_limit() {
@@ -116,9 +86,53 @@ Status take_over(const Setup& setup, const std::filesystem::path& store, QueueFi
   return {};
 }
 
+/// Tells the log how far each actuator came, once for each change of it.
+void report(const drivers::SafetyReport& safety, std::string& said) {
+  std::string text = safety.text();
+  if (text == said) return;
+  spdlog::log(safety.reached() ? spdlog::level::info : spdlog::level::critical, "safe state: {}",
+              text);
+  said = std::move(text);
+}
+
+/// Until every actuator is off and every instrument has begun, or the desk closes: what is missing
+/// may be plugged in any minute.
+bool begin_bench(Session& session, RunDesk& desk, std::string& said) {
+  std::string missing;
+  for (;;) {
+    const Status begun = session.begin();
+    if (begun) {
+      desk.bench_waits_for({});
+      return true;
+    }
+    if (begun.error().message != missing) {
+      missing = begun.error().message;
+      spdlog::error("{}; waiting for it", missing);
+      desk.bench_waits_for(missing);
+    }
+    for (auto waited = kBetweenLooks; waited <= kBetweenTries; waited += kBetweenLooks) {
+      if (!desk.still_open()) return false;
+      drivers::SteadyClock().sleep_for(kBetweenLooks);
+    }
+    report(session.make_safe(), said);
+  }
+}
+
 /// The bench's thread.
-void run_jobs(Session& session, RunDesk& desk) {
+void run_jobs(Session& session, RunDesk& desk, DeskOperator& person, procedures::Recorder& record,
+              std::string said) {
   try {
+    if (begin_bench(session, desk, said)) {
+      session.record_in(record);
+      procedures::RunEngine& engine = session.engine();
+      engine.on_progress([&desk, &session](const procedures::Progress& now) {
+        desk.progressed(now);
+        desk.saw(session.stream());
+      });
+      desk.attach(engine);
+      person.attach(engine);
+      spdlog::info("the bench is ready");
+    }
     while (const auto job = desk.next_job()) {
       const std::string& name = job->procedure.plan.procedure;
       spdlog::info("job {}, {}, gyro \"{}\": begins, asked for by {}", job->job, name,
@@ -136,35 +150,42 @@ void run_jobs(Session& session, RunDesk& desk) {
       desk.run_ended(summary);
     }
   } catch (const std::exception& error) {
-    end_at_once(fmt::format("an unexpected error: {}", error.what()));
+    end_at_once(fmt::format("an unexpected error: {}", error.what()), &session);
   }
 }
 
 /// Serves until the bench's thread has left the desk. `report` is called several times a second.
-void serve_clients(ControlServer& server, const ControlMethods& methods, RunDesk& desk, int signals,
-                   drivers::Clock& clock, drivers::Clock::Duration abort_time,
-                   const std::function<void()>& report) {
-  bool asked_to_end = false;
+void serve_clients(ControlServer& server, const ControlMethods& methods, RunDesk& desk,
+                   StopSignals& signals, Session& session, drivers::Clock& clock,
+                   drivers::Clock::Duration abort_time, const std::function<void()>& report) {
   constexpr auto kNever = drivers::Clock::Instant::max();
   auto forced_at = kNever;  // when the abort under way will have lasted too long
   while (!desk.deserted()) {
     server.serve_once();
     report();
-    for (auto signal = next_signal(signals); !signal.empty(); signal = next_signal(signals)) {
-      if (asked_to_end) end_at_once("a second signal, " + signal);
-      asked_to_end = true;
-      spdlog::info("{}: stopping", signal);
-      desk.close({signal, static_cast<std::uint32_t>(geteuid())});
-      report();
+    while (const auto signal = signals.next()) {
+      switch (signal->means) {
+        case StopSignals::Means::kAbort:
+          spdlog::info("{}: stopping", signal->name);
+          desk.close({signal->name, static_cast<std::uint32_t>(geteuid())});
+          report();
+          break;
+        case StopSignals::Means::kSameEvent:
+          spdlog::info("{}: stopping already", signal->name);
+          break;
+        case StopSignals::Means::kForcedEnd:
+          end_at_once("a second signal, " + signal->name, &session);
+      }
     }
-    if (methods.forced()) end_at_once("a forced abort");
+    if (methods.forced()) end_at_once("a forced abort", &session);
     if (!desk.aborting()) {
       forced_at = kNever;
     } else if (forced_at == kNever) {
       forced_at = clock.now() + abort_time;
     } else if (clock.now() > forced_at) {
       end_at_once(
-          fmt::format("no safe state within {} s of the abort", drivers::to_seconds(abort_time)));
+          fmt::format("no safe state within {} s of the abort", drivers::to_seconds(abort_time)),
+          &session);
     }
   }
 }
@@ -178,51 +199,41 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
                  "--speed max waits for nobody; serving needs realtime, or a number that is as "
                  "many times faster)"};
   }
+  drivers::SteadyClock clock;
+  StopSignals signals(clock);
+  const Setup planned_for = setup;
+  RunDesk desk;
+  DeskOperator person(desk);
+  // First of all: whatever is wrong below, nothing stays energised.
+  auto session = Session::attach(std::move(setup), seed, speed, person);
+  if (!session) return session.error();
+  std::string said;
+  report((*session)->make_safe(), said);
+
   const auto rules = rules_of(options);
   if (!rules) return rules.error();
   raise_descriptor_limit();
-  // Before the bench: two daemons must not touch one.
   const auto socket = open_socket(options.socket, rules->socket_mode());
   if (!socket) return socket.error();
-  drivers::SteadyClock clock;
   const auto metrics = MetricsFile::open(options.metrics, clock);
   if (!metrics) return metrics.error();
-  const drivers::FileDescriptor signals(take_signals());
-
-  const Setup planned_for = setup;
-  const std::string seeded = setup.simulated ? fmt::format(", seed {}", seed) : "";
-  RunDesk desk;
-  std::unique_ptr<RunLog> log;
-  std::optional<DeskRecorder> record;
-  DeskOperator person(desk);
-  const Session::OpenRecord open_record = [&]() -> Result<procedures::Recorder*> {
-    auto opened = RunLog::open(store);
-    if (!opened) return opened.error();
-    log = std::move(*opened);
-    return &record.emplace(*log, desk);
-  };
-  auto session = Session::open(std::move(setup), seed, open_record, speed, person);
-  if (!session) return session.error();
+  const auto log = RunLog::open(store);
+  if (!log) return log.error();
+  DeskRecorder record(**log, desk);
   QueueFile queue(store);
   if (const Status taken = take_over(planned_for, store, queue, desk); !taken) return taken;
-  procedures::RunEngine& engine = (*session)->engine();
-  engine.on_progress([&desk, &open = **session](const procedures::Progress& now) {
-    desk.progressed(now);
-    desk.saw(open.stream());
-  });
-  desk.attach(engine);
-  person.attach(engine);
-  spdlog::info("bench {} is in its safe state; run log {}{}; serving {}", planned_for.bench.name,
-               store.string(), seeded, (*socket)->name());
+  spdlog::info("bench {}; run log {}{}; serving {}", planned_for.bench.name, store.string(),
+               planned_for.simulated ? fmt::format(", seed {}", seed) : "", (*socket)->name());
 
   ControlMethods methods(desk, planned_for, store);
   methods.totals().started_unix_s = drivers::to_seconds(clock.wall_now().time_since_epoch());
-  ControlServer server((*socket)->descriptor(), signals.get(), *rules, methods, clock);
-  std::thread bench_thread(run_jobs, std::ref(**session), std::ref(desk));
+  ControlServer server((*socket)->descriptor(), signals.descriptor(), *rules, methods, clock);
+  std::thread bench_thread(run_jobs, std::ref(**session), std::ref(desk), std::ref(person),
+                           std::ref(record), said);
   pthread_setname_np(bench_thread.native_handle(), "bench");
   ServiceManager manager(clock);
   manager.ready();
-  serve_clients(server, methods, desk, signals.get(), clock, options.abort_time, [&] {
+  serve_clients(server, methods, desk, signals, **session, clock, options.abort_time, [&] {
     manager.report(desk);
     methods.totals().connections = server.connections();
     methods.totals().connections_refused = server.refused();
@@ -231,8 +242,8 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   });
   bench_thread.join();
 
-  const auto last = desk.view().last_run;
-  if (last && !last->safe_state_reached) return Error{ErrorCode::kDevice, last->reason};
+  // Once more: an instrument may have come back since.
+  if (const Status safe = (*session)->make_safe().status(); !safe) return safe;
   spdlog::info("stopped; the bench is in its safe state");
   return {};
 }

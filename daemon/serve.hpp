@@ -10,9 +10,13 @@
 //   pause    at the next divisible step; the bench holds what it has
 //   abort    safe state now, read back; the record says aborted. SIGTERM, SIGINT, SIGHUP: abort,
 //            then the process ends
-//   forced   the process ends at once and leaves the bench as it is: a second signal, `abort` with
+//   forced   the process ends at once, its last words 0 A to the coils, which nobody waits for: a
+//            second signal that comes StopSignals::kPatience after the first or later, `abort` with
 //            force, or an abort that has not reached the safe state within kAbortTime. Whoever
 //            supervises the daemon starts it again, and a start begins with the safe state.
+//
+// A start switches off what it can reach before anything else is opened or judged. While an
+// instrument is missing the daemon serves, says so, and goes on trying: jobs wait for it.
 
 #include <chrono>
 #include <cstdint>
@@ -37,8 +41,8 @@ struct ServeOptions {
 };
 
 /// Returns after a signal, the bench in its safe state. Errors: kUsage for a virtual clock, which
-/// waits for nobody; kBadInput for a group or a path; kDevice, kStore before anything is served, or
-/// when the bench could not be made safe.
+/// waits for nobody; kBadInput for a group or a path; kStore; kDevice for an instrument that
+/// another program has, or when the bench could not be made safe.
 Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store, Speed speed,
              const ServeOptions& options);
 

@@ -25,8 +25,11 @@ std::string service_status(const DeskView& view) {
   // A procedure's name and a prompt may be any text; a line is one line.
   constexpr std::size_t kLongest = 200;
   if (!view.run) {
-    if (view.jobs == 0) return "idle";
-    return fmt::format("idle, {} in the queue{}", view.jobs, view.held() ? ", held" : "");
+    std::string says = view.bench_waits_for.empty() ? "idle" : "waiting: " + view.bench_waits_for;
+    if (view.jobs > 0) {
+      says += fmt::format(", {} in the queue{}", view.jobs, view.held() ? ", held" : "");
+    }
+    return config::one_line(says, kLongest);
   }
   const procedures::Progress& now = view.run->progress;
   std::string says = fmt::format(

@@ -19,7 +19,7 @@ class ServiceManager {
   /// The clock is the machine's.
   explicit ServiceManager(drivers::Clock& clock);
 
-  /// The bench is safe and the socket is served.
+  /// What can be reached of the bench is safe, and the socket is served.
   void ready();
   /// To be called several times a second.
   void report(const RunDesk& desk);

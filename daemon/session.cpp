@@ -12,7 +12,6 @@
 #include "config/paths.hpp"
 #include "daemon/parameters_json.hpp"
 #include "daemon/resumption.hpp"
-#include "drivers/open_bench.hpp"
 #include "drivers/open_ports.hpp"
 #include "simulator/simulated_bench.hpp"
 
@@ -112,36 +111,13 @@ Result<PlannedProcedure> plan_procedure(const std::string& name, const config::B
                           bench.gyro.serial_number};
 }
 
-Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
-                                               const fs::path& store, Speed speed,
-                                               drivers::Operator& person) {
-  std::unique_ptr<RunLog> log;
-  const OpenRecord open_log = [&]() -> Result<procedures::Recorder*> {
-    auto opened = RunLog::open(store);
-    if (!opened) return opened.error();
-    log = std::move(*opened);
-    return log.get();
-  };
-  auto session = open(std::move(setup), seed, open_log, speed, person);
-  if (session) (*session)->log_ = std::move(log);
-  return session;
-}
-
-Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
-                                               procedures::Recorder& record, Speed speed,
-                                               drivers::Operator& person) {
-  const OpenRecord given = [&record]() -> Result<procedures::Recorder*> { return &record; };
-  return open(std::move(setup), seed, given, speed, person);
-}
-
-Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
-                                               const OpenRecord& open_record, Speed speed,
-                                               drivers::Operator& person) {
+Result<std::unique_ptr<Session>> Session::attach(Setup setup, std::uint64_t seed, Speed speed,
+                                                 drivers::Operator& person) {
   // A gyro without noise stands still by right.
   if (setup.scenario.noise == config::NoiseCoefficients{}) {
     setup.bench.gyro.device.stuck_after.reset();
   }
-  std::unique_ptr<Session> session(new Session(std::move(setup), seed));
+  std::unique_ptr<Session> session(new Session(std::move(setup), seed, speed, person));
   const Setup& made = session->setup_;
   if (speed == Speed::kMaximum) {
     // Starts today, so that the record's dates mean something; nothing measured depends on it.
@@ -153,17 +129,60 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
       made.simulated ? simulator::simulate_bench(made.bench, made.scenario, seed, *session->clock_)
                      : drivers::open_ports(made.bench, *session->clock_);
   if (!transports) return transports.error();
-  auto bench = drivers::open_bench(made.bench, std::move(*transports), *session->clock_, person);
+  auto bench = drivers::attach_bench(made.bench, std::move(*transports), *session->clock_, person);
   if (!bench) return bench.error();
   session->bench_ = std::move(*bench);
-  if (const Status safe = procedures::make_safe(session->bench_); !safe) return safe.error();
-  // After the bench: one that cannot be reached or simulated leaves nothing behind.
-  const auto record = open_record();
-  if (!record) return record.error();
-  session->engine_ = std::make_unique<procedures::RunEngine>(made.bench, session->bench_,
-                                                             *session->clock_, person, **record);
-  if (speed != Speed::kMaximum) session->engine_->wait_for_record();
   return session;
+}
+
+void Session::record_in(procedures::Recorder& record) {
+  engine_ = std::make_unique<procedures::RunEngine>(setup_.bench, bench_, *clock_, person_, record);
+  if (speed_ != Speed::kMaximum) engine_->wait_for_record();
+}
+
+Result<std::unique_ptr<Session>> Session::begun(Setup setup, std::uint64_t seed, Speed speed,
+                                                drivers::Operator& person) {
+  auto session = attach(std::move(setup), seed, speed, person);
+  if (!session) return session;
+  constexpr int kTries = 3;
+  for (int tries = 1;; ++tries) {
+    const drivers::SafetyReport safety = (*session)->make_safe();
+    const Status begun = (*session)->begin();
+    if (safety.reached() && begun) return session;
+    if (tries == kTries) {
+      const Error error = begun ? safety.status().error() : begun.error();
+      return Error{error.code, fmt::format("{} ({})", error.message, safety.text())};
+    }
+    (*session)->clock_->sleep_for(std::chrono::seconds{1});
+  }
+}
+
+Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
+                                               const fs::path& store, Speed speed,
+                                               drivers::Operator& person) {
+  auto session = begun(std::move(setup), seed, speed, person);
+  if (!session) return session;
+  // After the bench: one that cannot be reached or simulated leaves nothing behind.
+  auto log = RunLog::open(store);
+  if (!log) return log.error();
+  (*session)->log_ = std::move(*log);
+  (*session)->record_in(*(*session)->log_);
+  return session;
+}
+
+Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
+                                               procedures::Recorder& record, Speed speed,
+                                               drivers::Operator& person) {
+  auto session = begun(std::move(setup), seed, speed, person);
+  if (session) (*session)->record_in(record);
+  return session;
+}
+
+bool Session::send_last_zero() noexcept {
+  if (setup_.simulated) return false;
+  bench_.coil_horizontal->send_last_zero();
+  bench_.coil_vertical->send_last_zero();
+  return true;
 }
 
 Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure,

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -18,6 +17,8 @@
 #include "daemon/run_log.hpp"
 #include "drivers/clock.hpp"
 #include "drivers/instruments.hpp"
+#include "drivers/open_bench.hpp"
+#include "drivers/safe_state.hpp"
 #include "procedures/plan.hpp"
 #include "procedures/run_engine.hpp"
 
@@ -79,19 +80,25 @@ inline constexpr Speed Speed::kMaximum{std::numeric_limits<double>::infinity()};
 
 class Session {
  public:
-  /// Opens the bench, drives it to its safe state, and opens the run log. `person` must outlive the
-  /// session. Errors: kStore, and the instruments'.
+  /// The bench, and nothing said to any instrument. `person` must outlive the session. Errors:
+  /// kBadInput, or kDevice for an instrument that another program has.
+  static Result<std::unique_ptr<Session>> attach(Setup setup, std::uint64_t seed, Speed speed,
+                                                 drivers::Operator& person);
+  /// Before anything is judged: coils to 0 A, heaters off, on every instrument that can be reached.
+  drivers::SafetyReport make_safe() { return drivers::make_safe(bench_); }
+  /// Begins every instrument. May be repeated until it succeeds. Errors: the instruments'.
+  Status begin() { return drivers::begin_bench(bench_); }
+  /// When all have begun: runs are recorded in `record` from now on, which must outlive the
+  /// session.
+  void record_in(procedures::Recorder& record);
+
+  /// Attached, made safe and begun, and the run log opened. What cannot be reached is tried three
+  /// times, a second apart; the error then says how far each actuator came. Errors: as above, and
+  /// kStore.
   static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
                                                const std::filesystem::path& store, Speed speed,
                                                drivers::Operator& person);
-
-  /// Makes the record; must outlive the session.
-  using OpenRecord = std::function<Result<procedures::Recorder*>()>;
-  /// The same with a record of the caller's own: no run log. `open_record` is called when the bench
-  /// is in its safe state, so that no store, full or unreadable, keeps it from that.
-  static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
-                                               const OpenRecord& open_record, Speed speed,
-                                               drivers::Operator& person);
+  /// The same with a record of the caller's own: no run log.
   static Result<std::unique_ptr<Session>> open(Setup setup, std::uint64_t seed,
                                                procedures::Recorder& record, Speed speed,
                                                drivers::Operator& person);
@@ -101,17 +108,28 @@ class Session {
   /// kDevice when it takes up a run that other instruments measured.
   Result<procedures::RunSummary> run(const PlannedProcedure& procedure,
                                      const std::string& operator_name = {});
+  /// Precondition: record_in.
   procedures::RunEngine& engine() { return *engine_; }
   /// The bench's. Each run takes the machine's calendar over when it begins.
   drivers::Clock& clock() { return *clock_; }
   /// Of the gyro's stream, on the thread of run().
   const drivers::StreamStatistics& stream() const { return bench_.gyro->statistics(); }
 
+  /// Any thread: 0 A to both coil supplies, for a process that ends now. False on a simulated
+  /// bench, which ends with it.
+  bool send_last_zero() noexcept;
+
  private:
-  Session(Setup setup, std::uint64_t seed) : setup_(std::move(setup)), seed_(seed) {}
+  Session(Setup setup, std::uint64_t seed, Speed speed, drivers::Operator& person)
+      : setup_(std::move(setup)), seed_(seed), speed_(speed), person_(person) {}
+
+  static Result<std::unique_ptr<Session>> begun(Setup setup, std::uint64_t seed, Speed speed,
+                                                drivers::Operator& person);
 
   Setup setup_;
   std::uint64_t seed_;
+  Speed speed_;
+  drivers::Operator& person_;
   std::unique_ptr<drivers::Clock> clock_;
   std::unique_ptr<RunLog> log_;  ///< null when the record is the caller's
   drivers::Bench bench_;

@@ -49,14 +49,18 @@ HidMagnetometer::HidMagnetometer(std::string name, config::HidDevice device,
   status_ = find("status");
 }
 
-Result<std::unique_ptr<HidMagnetometer>> HidMagnetometer::open(
+Result<std::unique_ptr<HidMagnetometer>> HidMagnetometer::attach(
     std::string name, const config::HidDevice& device, std::unique_ptr<HidTransport> transport,
     Clock& clock) {
   std::unique_ptr<HidMagnetometer> magnetometer(
       new HidMagnetometer(std::move(name), device, std::move(transport), clock));
   if (const Status layout = magnetometer->check_layout(); !layout) return layout.error();
-  if (const auto first = magnetometer->read(); !first) return first.error();
   return magnetometer;
+}
+
+Status HidMagnetometer::begin() {
+  const auto first = read();
+  return first ? Status{} : first.error();
 }
 
 Error HidMagnetometer::error(ErrorCode code, const std::string& message) const {

@@ -16,12 +16,15 @@ namespace fogbench::drivers {
 
 class HidMagnetometer final : public Magnetometer {
  public:
-  /// Waits for a first report. `name` stands in front of every message; `clock` must outlive the
-  /// magnetometer. Errors: kBadInput for a layout that lacks an axis or does not fit its report.
-  static Result<std::unique_ptr<HidMagnetometer>> open(std::string name,
-                                                       const config::HidDevice& device,
-                                                       std::unique_ptr<HidTransport> transport,
-                                                       Clock& clock);
+  /// `name` stands in front of every message; `clock` must outlive the magnetometer. Errors:
+  /// kBadInput for a layout that lacks an axis or does not fit its report.
+  static Result<std::unique_ptr<HidMagnetometer>> attach(std::string name,
+                                                         const config::HidDevice& device,
+                                                         std::unique_ptr<HidTransport> transport,
+                                                         Clock& clock);
+
+  /// Waits for a first report. Errors: as read().
+  Status begin() override;
 
   /// The description's name: the transport has already found the device by its ids.
   Result<std::string> identity() override { return device_.name; }

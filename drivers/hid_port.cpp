@@ -59,11 +59,6 @@ class HidPort final : public HidTransport {
                           connection.product, connection.serial)),
         device_(clock, [this, connection] { return open_device(connection, name_); }) {}
 
-  Status reach() {
-    const auto device = device_.get();
-    return device ? Status{} : device.error();
-  }
-
   Result<std::size_t> read_report(std::span<std::uint8_t> out, Clock::Duration timeout) override {
     const auto device = device_.get();
     if (!device) return device.error();
@@ -110,9 +105,7 @@ class HidPort final : public HidTransport {
 
 Result<std::unique_ptr<HidTransport>> open_hid(const config::HidConnection& connection,
                                                Clock& clock) {
-  auto port = std::make_unique<HidPort>(connection, clock);
-  if (const Status reached = port->reach(); !reached) return reached.error();
-  return Result<std::unique_ptr<HidTransport>>(std::move(port));
+  return Result<std::unique_ptr<HidTransport>>(std::make_unique<HidPort>(connection, clock));
 }
 
 }  // namespace fogbench::drivers

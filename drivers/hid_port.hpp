@@ -10,10 +10,10 @@
 
 namespace fogbench::drivers {
 
-/// Opens the device with this serial number. The kernel keeps up to 64 reports, which may be as old
-/// as the last read: they are thrown away, so a report is one that came during the call. When the
-/// device is pulled, calls return kUnplugged until one with the same serial number is there again.
-/// `clock` must outlive the port. Errors: kUnplugged, which says what is there instead.
+/// The device with this serial number, which the first call opens. The kernel keeps up to 64
+/// reports, which may be as old as the last read: they are thrown away, so a report is one that
+/// came during the call. While no device with the serial number is there, calls return kUnplugged,
+/// which says what is there instead. `clock` must outlive the port.
 Result<std::unique_ptr<HidTransport>> open_hid(const config::HidConnection& connection,
                                                Clock& clock);
 

@@ -34,8 +34,30 @@ class Instrument {
   Instrument(const Instrument&) = delete;
   Instrument& operator=(const Instrument&) = delete;
   virtual ~Instrument() = default;
+  /// Reaches it, checks who it is and readies it. May be repeated until it succeeds: an instrument
+  /// may be plugged in later.
+  virtual Status begin() { return {}; }
   /// What it says it is, for the record ("KEPCO,BOP ...", or the map's name where it cannot say).
   virtual Result<std::string> identity() = 0;
+};
+
+/// What was attached to its transport, begun.
+template <class Driver>
+Result<std::unique_ptr<Driver>> begun(Result<std::unique_ptr<Driver>> attached) {
+  if (!attached) return attached;
+  if (const Status ready = (*attached)->begin(); !ready) return ready.error();
+  return attached;
+}
+
+/// An instrument that can do harm, and how that is ended: whoever is at the other end, healthy or
+/// not, begun or not. Neither call asks for an identity or a valid sensor.
+class Actuator : public Instrument {
+ public:
+  /// Sends what switches it off, and waits for no more than the wire itself asks for. kUnplugged
+  /// when it cannot be reached; after any other error it may have been obeyed.
+  virtual Status switch_off() = 0;
+  /// Whether it is off, by what it reads back.
+  virtual Status confirm_off() = 0;
 };
 
 struct ThermostatReading {
@@ -48,7 +70,7 @@ struct ThermostatReading {
   Watt boost_power, normal_power;
 };
 
-class Thermostat : public Instrument {
+class Thermostat : public Actuator {
  public:
   /// Both are read back; a difference is kDevice.
   virtual Status set_target(Celsius target) = 0;
@@ -62,16 +84,17 @@ struct CoilReading {
   Ampere measured;
 };
 
-/// One pair of coils' bipolar current source.
-class CoilSupply : public Instrument {
+/// One pair of coils' bipolar current source. Switched off: 0 A, then the output off.
+class CoilSupply : public Actuator {
  public:
   /// Programs 0 A, then switches the output on.
   virtual Status enable() = 0;
   /// Waits for the output to settle and reads it back; kDevice when it does not follow.
   virtual Status set_current(Ampere current) = 0;
   virtual Result<CoilReading> read() = 0;
-  /// 0 A, read back, output off.
-  virtual Status make_safe() = 0;
+  /// For a process that ends now: 0 A once more, past whatever is under way and without waiting.
+  /// Any thread may call it, once; nobody can say whether it arrives.
+  virtual void send_last_zero() noexcept {}
 };
 
 struct FieldReading {

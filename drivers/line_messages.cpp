@@ -83,4 +83,9 @@ Status LineMessages::clear() {
   return {};
 }
 
+void LineMessages::write_last(std::string_view message) noexcept {
+  const std::string line = '\n' + std::string(message) + '\n';  // ends what is half sent
+  serial_->write_last(std::as_bytes(std::span(line)));
+}
+
 }  // namespace fogbench::drivers

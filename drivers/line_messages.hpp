@@ -21,6 +21,7 @@ class LineMessages final : public MessageTransport {
   Result<std::string> read(Clock::Duration timeout) override;
   /// Ends whatever line is half sent, and listens for late answers, which it throws away.
   Status clear() override;
+  void write_last(std::string_view message) noexcept override;
 
  private:
   /// What has arrived by now is added to arrived_; how much that was.

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <optional>
 
 #include "drivers/deadline.hpp"
 #include "drivers/reconnect.hpp"
@@ -71,11 +72,6 @@ class ModbusPort final : public ModbusTransport {
   /// `character` is the time of one on a serial line, zero on TCP.
   ModbusPort(std::string where, Clock::Duration character, Clock& clock, Open open)
       : where_(std::move(where)), character_(character), line_(clock, std::move(open)) {}
-
-  Status reach() {
-    const auto line = line_.get();
-    return line ? Status{} : line.error();
-  }
 
   Status read_registers(std::uint16_t address, std::span<std::uint16_t> out) override {
     const auto line = begin(out.size());
@@ -142,11 +138,6 @@ class ModbusPort final : public ModbusTransport {
   Reconnecting<ModbusLine> line_;
 };
 
-Result<std::unique_ptr<ModbusTransport>> reached(std::unique_ptr<ModbusPort> port) {
-  if (const Status reached = port->reach(); !reached) return reached.error();
-  return Result<std::unique_ptr<ModbusTransport>>(std::move(port));
-}
-
 }  // namespace
 
 Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::TcpConnection& connection,
@@ -157,26 +148,30 @@ Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::TcpConnection
         modbus_new_tcp_pi(connection.host.c_str(), std::to_string(connection.port).c_str()), where,
         unit);
   };
-  return reached(std::make_unique<ModbusPort>(where, Clock::Duration::zero(), clock, open));
+  return Result<std::unique_ptr<ModbusTransport>>(
+      std::make_unique<ModbusPort>(where, Clock::Duration::zero(), clock, open));
 }
 
 Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::RtuConnection& connection,
                                                      std::uint8_t unit, Clock& clock) {
   // Which adapter it was when first opened: another one may get its name when it is pulled.
-  const std::string adapter = usb_adapter_of(connection.tty);
-  const auto open = [connection, unit, adapter]() -> Result<std::unique_ptr<ModbusLine>> {
-    if (const std::string now = usb_adapter_of(connection.tty); now != adapter && !now.empty()) {
+  std::optional<std::string> adapter;
+  const auto open = [connection, unit, adapter]() mutable -> Result<std::unique_ptr<ModbusLine>> {
+    const std::string now = usb_adapter_of(connection.tty);
+    if (adapter && now != *adapter && !now.empty()) {
       return Error{ErrorCode::kUnplugged,
                    fmt::format("{} is another adapter now: found {}, expected {}", connection.tty,
-                               now, adapter)};
+                               now, *adapter)};
     }
-    return connect(modbus_new_rtu(connection.tty.c_str(), static_cast<int>(connection.baud),
-                                  connection.parity, 8, connection.stop_bits),
-                   connection.tty, unit);
+    auto line = connect(modbus_new_rtu(connection.tty.c_str(), static_cast<int>(connection.baud),
+                                       connection.parity, 8, connection.stop_bits),
+                        connection.tty, unit);
+    if (line && !adapter) adapter = now;
+    return line;
   };
-  return reached(std::make_unique<ModbusPort>(fmt::format("unit {} on {}", unit, connection.tty),
-                                              from_seconds(kBitsPerCharacter / connection.baud),
-                                              clock, open));
+  return Result<std::unique_ptr<ModbusTransport>>(
+      std::make_unique<ModbusPort>(fmt::format("unit {} on {}", unit, connection.tty),
+                                   from_seconds(kBitsPerCharacter / connection.baud), clock, open));
 }
 
 }  // namespace fogbench::drivers

@@ -16,8 +16,8 @@
 
 namespace fogbench::drivers {
 
-/// Reaches the instrument with the address `unit`. `clock` must outlive the port. Errors:
-/// kUnplugged when nobody is there, or the line cannot be opened.
+/// The way to the instrument with the address `unit`, which the first call opens: kUnplugged while
+/// nobody is there, or the line cannot be opened. `clock` must outlive the port.
 Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::TcpConnection& connection,
                                                      std::uint8_t unit, Clock& clock);
 Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::RtuConnection& connection,

@@ -16,8 +16,15 @@ using config::RegisterSpec;
 constexpr int kAttempts = 3;
 constexpr std::size_t kMostWords = 125;  ///< of one Modbus read
 
+/// A controller refreshes its registers once per cycle, some tenths of a second later at most.
+constexpr int kPowerLooks = 10;
+constexpr Clock::Duration kPowerLook = std::chrono::milliseconds{100};
+/// Below what any heater is switched at, above the resolution of a power reading.
+constexpr double kOffW = 0.1;
+constexpr const char* kOffKey = "off";
+
 constexpr std::pair<HeatingMode, const char*> kModes[] = {
-    {HeatingMode::kOff, "off"}, {HeatingMode::kBoost, "boost"}, {HeatingMode::kNormal, "normal"}};
+    {HeatingMode::kOff, kOffKey}, {HeatingMode::kBoost, "boost"}, {HeatingMode::kNormal, "normal"}};
 
 bool is_within(const RegisterSpec& spec, double value) {
   return !(spec.minimum && value < *spec.minimum) && !(spec.maximum && value > *spec.maximum);
@@ -58,15 +65,19 @@ ModbusThermostat::ModbusThermostat(std::string name, config::ModbusDevice device
       clock_(clock),
       stillness_(device_.stuck_after) {}
 
-Result<std::unique_ptr<ModbusThermostat>> ModbusThermostat::open(
+Result<std::unique_ptr<ModbusThermostat>> ModbusThermostat::attach(
     std::string name, const config::ModbusDevice& device,
     std::unique_ptr<ModbusTransport> transport, Clock& clock) {
   std::unique_ptr<ModbusThermostat> thermostat(
       new ModbusThermostat(std::move(name), device, std::move(transport), clock));
   if (const Status map = thermostat->check_map(); !map) return map.error();
   thermostat->group_registers();
-  if (const auto first = thermostat->read(); !first) return first.error();
   return thermostat;
+}
+
+Status ModbusThermostat::begin() {
+  const auto first = read();
+  return first ? Status{} : first.error();
 }
 
 Error ModbusThermostat::error(ErrorCode code, const std::string& message) const {
@@ -191,6 +202,39 @@ Status ModbusThermostat::set_mode(HeatingMode mode) {
     if (known == mode) return write_and_verify(*specs_[kMode], device_.modes.at(key));
   }
   return error(ErrorCode::kLimit, "no such heating mode");
+}
+
+Status ModbusThermostat::switch_off() {
+  const RegisterSpec& spec = *specs_[kMode];
+  std::vector<std::uint16_t> words(word_count(spec.type));
+  if (const Status encoded = write_words(spec, device_.modes.at(kOffKey), words); !encoded) {
+    return named(name_, encoded.error());
+  }
+  const Status written = transport_->write_registers(spec.address, words);
+  return written ? written
+                 : error(written.error().code,
+                         fmt::format("switching the heaters off: {}", written.error().message));
+}
+
+Status ModbusThermostat::confirm_off() {
+  const double off = device_.modes.at(kOffKey);
+  const auto mode = read_one(*specs_[kMode]);
+  if (!mode) return mode.error();
+  if (*mode != off) {
+    return error(ErrorCode::kDevice,
+                 fmt::format("the heating mode reads back {}, expected {} (off)", *mode, off));
+  }
+  double power_w = 0.0;
+  for (int look = 0; look < kPowerLooks; ++look) {
+    if (look > 0) clock_.sleep_for(kPowerLook);
+    power_w = 0.0;
+    for (const Quantity heater : {kBoostPower, kNormalPower}) {
+      const auto power = read_one(*specs_[heater]);
+      if (power) power_w += *power;
+    }
+    if (power_w <= kOffW) return {};
+  }
+  return error(ErrorCode::kDevice, fmt::format("the heaters still draw {:.1f} W", power_w));
 }
 
 Result<HeatingMode> ModbusThermostat::mode_of(double value) const {

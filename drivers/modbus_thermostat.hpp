@@ -16,20 +16,24 @@ namespace fogbench::drivers {
 
 class ModbusThermostat final : public Thermostat {
  public:
-  /// Checks the map and reads everything once. `name` stands in front of every message; `clock`
-  /// must outlive the thermostat. Errors: kBadInput for a map that lacks a register or a mode, or
-  /// that an instrument of even counts cannot answer; else as read().
-  static Result<std::unique_ptr<ModbusThermostat>> open(std::string name,
-                                                        const config::ModbusDevice& device,
-                                                        std::unique_ptr<ModbusTransport> transport,
-                                                        Clock& clock);
+  /// Checks the map and says nothing. `name` stands in front of every message; `clock` must outlive
+  /// the thermostat. Errors: kBadInput for a map that lacks a register or a mode, or that an
+  /// instrument of even counts cannot answer.
+  static Result<std::unique_ptr<ModbusThermostat>> attach(
+      std::string name, const config::ModbusDevice& device,
+      std::unique_ptr<ModbusTransport> transport, Clock& clock);
 
+  /// Reads everything once. Errors: as read().
+  Status begin() override;
   /// Modbus has no question for it: the map's name.
   Result<std::string> identity() override { return device_.name; }
   Status set_target(Celsius target) override;
   Status set_mode(HeatingMode mode) override;
   /// kStale when the registers took longer than the map's max_age to collect.
   Result<ThermostatReading> read() override;
+  Status switch_off() override;
+  /// By the heating mode, and by the heaters' power where it reads as a number.
+  Status confirm_off() override;
 
  private:
   /// What the driver asks for, in the order of kNames.

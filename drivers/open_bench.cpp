@@ -1,5 +1,10 @@
 #include "drivers/open_bench.hpp"
 
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
 #include "drivers/hid_magnetometer.hpp"
 #include "drivers/modbus_thermostat.hpp"
 #include "drivers/scpi_coil_supply.hpp"
@@ -14,10 +19,18 @@ Status check_connected(const char* name, bool connected) {
   return Error{ErrorCode::kDevice, std::string(name) + ": is not connected to anything"};
 }
 
+/// Moves what was attached to its place in the bench.
+template <class Driver, class Place>
+Status take(Result<std::unique_ptr<Driver>> attached, Place& place) {
+  if (!attached) return attached.error();
+  place = std::move(*attached);
+  return {};
+}
+
 }  // namespace
 
-Result<Bench> open_bench(const config::BenchConfig& config, Transports transports, Clock& clock,
-                         Operator& operator_) {
+Result<Bench> attach_bench(const config::BenchConfig& config, Transports transports, Clock& clock,
+                           Operator& operator_) {
   for (const Status& connected :
        {check_connected("thermostat", transports.thermostat != nullptr),
         check_connected("coil_horizontal", transports.coil_horizontal != nullptr),
@@ -29,41 +42,64 @@ Result<Bench> open_bench(const config::BenchConfig& config, Transports transport
     if (!connected) return connected.error();
   }
   Bench bench;
-
-  // The coils first: whatever fails below, they are at 0 A.
-  auto horizontal = ScpiCoilSupply::open("coil_horizontal", config.coil_horizontal,
-                                         std::move(transports.coil_horizontal), clock);
-  if (!horizontal) return horizontal.error();
-  bench.coil_horizontal = std::move(*horizontal);
-
-  auto vertical = ScpiCoilSupply::open("coil_vertical", config.coil_vertical,
-                                       std::move(transports.coil_vertical), clock);
-  if (!vertical) return vertical.error();
-  bench.coil_vertical = std::move(*vertical);
-
-  auto thermostat = ModbusThermostat::open("thermostat", config.thermostat.device,
-                                           std::move(transports.thermostat), clock);
-  if (!thermostat) return thermostat.error();
-  bench.thermostat = std::move(*thermostat);
-
-  auto magnetometer = HidMagnetometer::open("magnetometer", config.magnetometer.device,
-                                            std::move(transports.magnetometer), clock);
-  if (!magnetometer) return magnetometer.error();
-  bench.magnetometer = std::move(*magnetometer);
-
-  if (config.turntable.motorised) {
-    auto turntable =
-        ScpiTurntable::open("turntable", config.turntable, std::move(transports.turntable), clock);
-    if (!turntable) return turntable.error();
-    bench.turntable = std::move(*turntable);
+  Status status = take(ScpiCoilSupply::attach("coil_horizontal", config.coil_horizontal,
+                                              std::move(transports.coil_horizontal), clock),
+                       bench.coil_horizontal);
+  if (status) {
+    status = take(ScpiCoilSupply::attach("coil_vertical", config.coil_vertical,
+                                         std::move(transports.coil_vertical), clock),
+                  bench.coil_vertical);
+  }
+  if (status) {
+    status = take(ModbusThermostat::attach("thermostat", config.thermostat.device,
+                                           std::move(transports.thermostat), clock),
+                  bench.thermostat);
+  }
+  if (status) {
+    status = take(HidMagnetometer::attach("magnetometer", config.magnetometer.device,
+                                          std::move(transports.magnetometer), clock),
+                  bench.magnetometer);
+  }
+  if (status && config.turntable.motorised) {
+    status = take(ScpiTurntable::attach("turntable", config.turntable,
+                                        std::move(transports.turntable), clock),
+                  bench.turntable);
   } else {
     bench.turntable = std::make_unique<ManualTurntable>("turntable", operator_);
   }
+  if (status) {
+    status = take(SerialGyro::attach("gyro", config.gyro, std::move(transports.gyro), clock),
+                  bench.gyro);
+  }
+  if (!status) return status.error();
+  return bench;
+}
 
-  // The gyro last: it streams from now on, and a line holds little.
-  auto gyro = SerialGyro::open("gyro", config.gyro, std::move(transports.gyro), clock);
-  if (!gyro) return gyro.error();
-  bench.gyro = std::move(*gyro);
+Status begin_bench(const Bench& bench) {
+  std::optional<Error> failure;
+  // The coils first. The gyro last: it streams from then on, and a line holds little.
+  for (Instrument* instrument : {static_cast<Instrument*>(bench.coil_horizontal.get()),
+                                 static_cast<Instrument*>(bench.coil_vertical.get()),
+                                 static_cast<Instrument*>(bench.thermostat.get()),
+                                 static_cast<Instrument*>(bench.magnetometer.get()),
+                                 static_cast<Instrument*>(bench.turntable.get()),
+                                 static_cast<Instrument*>(bench.gyro.get())}) {
+    const Status begun = instrument->begin();
+    if (begun) continue;
+    if (failure) {
+      failure->message += "; " + begun.error().message;
+    } else {
+      failure = begun.error();
+    }
+  }
+  return failure ? Status(*failure) : Status{};
+}
+
+Result<Bench> open_bench(const config::BenchConfig& config, Transports transports, Clock& clock,
+                         Operator& operator_) {
+  auto bench = attach_bench(config, std::move(transports), clock, operator_);
+  if (!bench) return bench;
+  if (const Status begun = begin_bench(*bench); !begun) return begun.error();
   return bench;
 }
 

@@ -8,9 +8,19 @@
 
 namespace fogbench::drivers {
 
-/// Puts the drivers that `config` names on top of the transports and initialises every instrument
-/// (identity checked, coil supplies at 0 A with output off). `clock` and `operator_` must outlive
-/// the bench. Errors: as the instruments', with the instrument's name in the message.
+/// Puts the drivers that `config` names on top of the transports, and says nothing to any
+/// instrument. `clock` and `operator_` must outlive the bench. Errors: kBadInput for a description
+/// that its driver cannot work with; kDevice for an instrument without a transport; with the
+/// instrument's name in front.
+Result<Bench> attach_bench(const config::BenchConfig& config, Transports transports, Clock& clock,
+                           Operator& operator_);
+
+/// Begins every instrument, the others too when one fails: identity checked, coil supplies at 0 A
+/// with their outputs off. May be repeated. The error is the first one, with those of the other
+/// instruments behind it.
+Status begin_bench(const Bench& bench);
+
+/// Attached and begun.
 Result<Bench> open_bench(const config::BenchConfig& config, Transports transports, Clock& clock,
                          Operator& operator_);
 

@@ -11,9 +11,9 @@
 
 namespace fogbench::drivers {
 
-/// Reaches an instrument of the described kind at `connection`, written as in a bench file. `clock`
-/// must outlive the transport. Errors: kBadInput ("connection: found ..., expected ...") for a
-/// connection that cannot be read or that no instrument of the kind has; else as the port's.
+/// The way to an instrument of the described kind at `connection`, written as in a bench file; the
+/// first call opens it. `clock` must outlive the transport. Errors: kBadInput ("connection: found
+/// ..., expected ...") for a connection that cannot be read or that no instrument of the kind has.
 Result<std::unique_ptr<ModbusTransport>> open_port(const config::ModbusDevice& device,
                                                    const std::string& connection, Clock& clock);
 Result<std::unique_ptr<MessageTransport>> open_port(const config::ScpiDevice& device,
@@ -23,9 +23,8 @@ Result<std::unique_ptr<HidTransport>> open_port(const config::HidDevice& device,
 Result<std::unique_ptr<SerialTransport>> open_port(const config::FrameDevice& device,
                                                    const std::string& connection, Clock& clock);
 
-/// Reaches every instrument of a bench where it is connected, each within its own deadline. `clock`
-/// must outlive the transports. Errors: as open_port, with the instrument's name in front; a
-/// simulated instrument is one too: a bench is reached either as a whole or not at all.
+/// The ways to all instruments of a bench, whoever is there. `clock` must outlive the transports.
+/// Errors: as open_port, with the instrument's name in front; a simulated instrument is one too.
 /// Precondition: a motorised turntable has its description.
 Result<Transports> open_ports(const config::BenchConfig& config, Clock& clock);
 

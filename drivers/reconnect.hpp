@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 #include "config/result.hpp"
@@ -36,13 +37,24 @@ class Reconnecting {
       pause_ = std::min(2 * pause_, kLongestPause);
       return last_;
     }
+    const std::lock_guard lock(last_words_);
     handle_ = std::move(*opened);
     pause_ = kFirstPause;
     return handle_.get();
   }
 
   /// Forgets the handle: the instrument is gone, or nothing that comes from it can be trusted.
-  void lost() { handle_.reset(); }
+  void lost() {
+    const std::lock_guard lock(last_words_);
+    handle_.reset();
+  }
+
+  /// Any thread: `say` with the handle, if it is open, while nobody closes it.
+  template <class Say>
+  void last_words(Say say) {
+    const std::lock_guard lock(last_words_);
+    if (handle_) say(*handle_);
+  }
 
  private:
   static constexpr Clock::Duration kFirstPause = std::chrono::milliseconds{100};
@@ -50,6 +62,7 @@ class Reconnecting {
 
   Clock& clock_;
   Open open_;
+  std::mutex last_words_;  ///< held while handle_ changes
   std::unique_ptr<Handle> handle_;
   Error last_{ErrorCode::kUnplugged, ""};
   Clock::Instant next_try_{Clock::Instant::min()};

@@ -13,36 +13,41 @@ constexpr int kLooks = 2;
 
 }  // namespace
 
-Result<std::unique_ptr<ScpiCoilSupply>> ScpiCoilSupply::open(
+Result<std::unique_ptr<ScpiCoilSupply>> ScpiCoilSupply::attach(
     std::string name, const config::CoilConfig& config, std::unique_ptr<MessageTransport> transport,
     Clock& clock) {
-  auto dialogue = ScpiDialogue::open(std::move(name), config.device, std::move(transport));
+  auto dialogue = ScpiDialogue::attach(std::move(name), config.device, std::move(transport));
   if (!dialogue) return dialogue.error();
-  std::unique_ptr<ScpiCoilSupply> supply(new ScpiCoilSupply(std::move(*dialogue), config, clock));
-  if (const Status safe = supply->make_safe(); !safe) return safe.error();
-  return supply;
+  return std::unique_ptr<ScpiCoilSupply>(new ScpiCoilSupply(std::move(*dialogue), config, clock));
+}
+
+Status ScpiCoilSupply::begin() {
+  if (Status begun = dialogue_.begin(); !begun) return begun;
+  if (Status sent = switch_off(); !sent) return sent;
+  return confirm_off();
 }
 
 Status ScpiCoilSupply::program(double current_a) {
   // Whether or not it is obeyed, the output may be changing from now on.
   Status done = dialogue_.set(current_a);
-  valid_from_ = clock_.now() + from_seconds(config_.device.settle.count());
+  settle();
   return done;
 }
 
-Result<double> ScpiCoilSupply::measure() {
-  clock_.sleep_until(valid_from_);
-  return dialogue_.query_number(config_.device.measure_query);
+void ScpiCoilSupply::settle() {
+  valid_from_ = clock_.now() + from_seconds(config_.device.settle.count());
 }
 
-Status ScpiCoilSupply::verify(double set_a) {
+Status ScpiCoilSupply::verify(double set_a,
+                              Result<double> (ScpiDialogue::*measure)(const std::string&)) {
   double measured_a = 0.0;
   for (int look = 0; look < kLooks; ++look) {
-    const auto measured = measure();
+    clock_.sleep_until(valid_from_);
+    const auto measured = (dialogue_.*measure)(config_.device.measure_query);
     if (!measured) return measured.error();
     measured_a = *measured;
     if (std::abs(measured_a - set_a) <= config_.device.read_back_tolerance) return {};
-    valid_from_ = clock_.now() + from_seconds(config_.device.settle.count());
+    settle();
   }
   return dialogue_.error(
       ErrorCode::kDevice,
@@ -54,9 +59,9 @@ Status ScpiCoilSupply::enable() {
   if (Status zero = program(0.0); !zero) return zero;
   if (!config_.device.output_on.empty()) {
     if (Status on = dialogue_.command(config_.device.output_on); !on) return on;
-    valid_from_ = clock_.now() + from_seconds(config_.device.settle.count());
+    settle();
   }
-  return verify(0.0);
+  return verify(0.0, &ScpiDialogue::query_number);
 }
 
 Status ScpiCoilSupply::set_current(Ampere current) {
@@ -71,26 +76,33 @@ Status ScpiCoilSupply::set_current(Ampere current) {
   const double rounded = step > 0 ? std::round(current.value / step) * step : current.value;
   const double set_a = std::clamp(rounded, lowest, highest);
   if (Status done = program(set_a); !done) return done;
-  return verify(set_a);
+  return verify(set_a, &ScpiDialogue::query_number);
 }
 
 Result<CoilReading> ScpiCoilSupply::read() {
-  const auto measured = measure();
+  clock_.sleep_until(valid_from_);
+  const auto measured = dialogue_.query_number(config_.device.measure_query);
   if (!measured) return measured.error();
   const auto set = dialogue_.query_number(config_.device.set_query);
   if (!set) return set.error();
   return CoilReading{.taken_at = clock_.now(), .set = Ampere{*set}, .measured = Ampere{*measured}};
 }
 
-Status ScpiCoilSupply::make_safe() {
-  Status first_failure = program(0.0);
-  const Status zero = verify(0.0);
-  if (first_failure) first_failure = zero;
+Status ScpiCoilSupply::switch_off() {
+  Status first_failure = dialogue_.tell_value(0.0);
+  settle();
   if (!config_.device.output_off.empty()) {
-    const Status off = dialogue_.command(config_.device.output_off);
+    const Status off = dialogue_.tell(config_.device.output_off);
     if (first_failure) first_failure = off;
   }
   return first_failure;
+}
+
+Status ScpiCoilSupply::confirm_off() {
+  if (Status zero = verify(0.0, &ScpiDialogue::look); !zero) return zero;
+  const std::string refused = dialogue_.refused();
+  if (refused.empty()) return {};
+  return dialogue_.error(ErrorCode::kDevice, "switching off was refused: " + refused);
 }
 
 }  // namespace fogbench::drivers

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "config/json_file.hpp"
 #include "drivers/named_error.hpp"
@@ -25,6 +27,8 @@ constexpr int kMostErrors = 64;
 /// SCPI-99, 7.2.1.4 and 5: an instrument's words for infinity and not-a-number.
 constexpr double kInfinity = 9.9e37;
 
+/// Stands for the value in a description's `set`.
+constexpr std::string_view kPlace = "{value}";
 /// What a value is rounded to on its way.
 constexpr double kSentResolution = 1e-6;
 
@@ -68,8 +72,8 @@ Error ScpiDialogue::error(ErrorCode code, const std::string& message) const {
   return {code, name_ + ": " + message};
 }
 
-Result<ScpiDialogue> ScpiDialogue::open(std::string name, const config::ScpiDevice& device,
-                                        std::unique_ptr<MessageTransport> transport) {
+Result<ScpiDialogue> ScpiDialogue::attach(std::string name, const config::ScpiDevice& device,
+                                          std::unique_ptr<MessageTransport> transport) {
   ScpiDialogue dialogue(std::move(name), device, std::move(transport));
   std::vector<std::string> all = device.initialise;
   for (const auto* text : {&device.set, &device.set_query, &device.measure_query, &device.output_on,
@@ -82,11 +86,29 @@ Result<ScpiDialogue> ScpiDialogue::open(std::string name, const config::ScpiDevi
                                       "maximum and is never sent",
                                       device.name, *test));
   }
-  if (const Status begun = dialogue.begin(); !begun) return begun.error();
+  if (device.set.find(kPlace) == std::string::npos) {
+    return dialogue.error(ErrorCode::kBadInput,
+                          fmt::format("\"{}\" has no {} in it", device.set, kPlace));
+  }
+  return dialogue;
+}
+
+Result<ScpiDialogue> ScpiDialogue::open(std::string name, const config::ScpiDevice& device,
+                                        std::unique_ptr<MessageTransport> transport) {
+  auto dialogue = attach(std::move(name), device, std::move(transport));
+  if (!dialogue) return dialogue;
+  if (const Status begun = dialogue->begin(); !begun) return begun.error();
   return dialogue;
 }
 
 Status ScpiDialogue::begin() {
+  lost_ = false;  // what follows asks and commands
+  Status begun = begin_anew();
+  if (!begun) lost_ = true;
+  return begun;
+}
+
+Status ScpiDialogue::begin_anew() {
   if (const Status cleared = transport_->clear(); !cleared) return failed("clear", cleared.error());
   auto identity = query("*IDN?");
   if (!identity) return identity.error();
@@ -103,11 +125,38 @@ Status ScpiDialogue::begin() {
 }
 
 Status ScpiDialogue::resume() {
-  if (!lost_) return {};
-  lost_ = false;  // begin() asks and commands
-  Status begun = begin();
-  if (!begun) lost_ = true;
-  return begun;
+  return lost_ ? begin() : Status{};
+}
+
+Status ScpiDialogue::tell(const std::string& text) {
+  told_ = true;
+  const Status sent = transport_->write(text);
+  return sent ? sent : failed(text, sent.error());
+}
+
+Status ScpiDialogue::tell_value(double value) {
+  return tell(set_text(value));
+}
+
+Result<double> ScpiDialogue::look(const std::string& question) {
+  const auto answer = ask(question);
+  if (!answer) {
+    std::ignore = transport_->clear();
+    return failed(question, answer.error());
+  }
+  const auto value = parse_scpi_number(*answer);
+  if (value) return *value;
+  return no_number(question, *answer);
+}
+
+std::string ScpiDialogue::refused() {
+  if (lost_ || !std::exchange(told_, false)) return {};
+  auto entries = drain_errors(&ScpiDialogue::ask);
+  return entries ? std::move(*entries) : std::string();
+}
+
+void ScpiDialogue::tell_last(double value) noexcept {
+  transport_->write_last(set_text(value));
 }
 
 Error ScpiDialogue::failed(const std::string& what, const Error& failure) {
@@ -149,12 +198,17 @@ Result<double> ScpiDialogue::query_number(const std::string& question) {
     if (value) return *value;
     says = *answer;
   }
+  return no_number(question, says);
+}
+
+Error ScpiDialogue::no_number(const std::string& question, const std::string& answer) const {
   return error(ErrorCode::kProtocol,
-               fmt::format("{} answers \"{}\", expected a number", question, one_line(says)));
+               fmt::format("{} answers \"{}\", expected a number", question, one_line(answer)));
 }
 
 Status ScpiDialogue::command(const std::string& text) {
   if (Status resumed = resume(); !resumed) return resumed;
+  std::ignore = refused();
   if (const Status sent = transport_->write(text); !sent) return failed(text, sent.error());
   const auto errors = drain_errors(&ScpiDialogue::query);
   if (!errors) return errors.error();
@@ -162,15 +216,14 @@ Status ScpiDialogue::command(const std::string& text) {
   return error(ErrorCode::kDevice, fmt::format("{} was refused: {}", text, *errors));
 }
 
-Status ScpiDialogue::set(double value) {
-  constexpr std::string_view kPlace = "{value}";
+std::string ScpiDialogue::set_text(double value) const {
   std::string text = set_;
-  const std::size_t place = text.find(kPlace);
-  if (place == std::string::npos) {
-    return error(ErrorCode::kBadInput, fmt::format("\"{}\" has no {} in it", set_, kPlace));
-  }
   // Micro-units; never an exponent, which some firmware does not read.
-  text.replace(place, kPlace.size(), fmt::format("{:.6f}", value));
+  return text.replace(text.find(kPlace), kPlace.size(), fmt::format("{:.6f}", value));
+}
+
+Status ScpiDialogue::set(double value) {
+  const std::string text = set_text(value);
   Status done = command(text);
   if (done || !is_lost(done.error()) || set_query_.empty()) return done;
   if (const Status cleared = transport_->clear(); !cleared) return done;

@@ -23,17 +23,36 @@ std::optional<double> parse_scpi_number(std::string_view text);
 
 class ScpiDialogue {
  public:
-  /// Clears the line, checks the identity, empties the queue of old errors and sends the
-  /// initialisation. `name` stands in front of every message. Errors: kBadInput for a description
-  /// that would send a self test, kDevice for another instrument than described; else as below.
+  /// Says nothing yet. `name` stands in front of every message. Errors: kBadInput for a description
+  /// that would send a self test, or whose `set` has no place for the value.
+  static Result<ScpiDialogue> attach(std::string name, const config::ScpiDevice& device,
+                                     std::unique_ptr<MessageTransport> transport);
+  /// Attached and begun.
   static Result<ScpiDialogue> open(std::string name, const config::ScpiDevice& device,
                                    std::unique_ptr<MessageTransport> transport);
+
+  /// Clears the line, checks the identity, empties the queue of old errors and sends the
+  /// initialisation. Errors: kDevice for another instrument than described; else as below.
+  Status begin();
 
   const std::string& name() const { return name_; }
   const std::string& identity() const { return identity_; }
 
+  // Whoever is there, in whatever state: for what must be done first and judged later.
+
+  /// Sends it, and waits for nothing.
+  Status tell(const std::string& text);
+  Status tell_value(double value);
+  /// Asks once. What a failed question leaves under way is cleared.
+  Result<double> look(const std::string& question);
+  /// What it has refused of what it was told, as far as that can be known: of a dialogue that has
+  /// not begun nobody knows what was in the queue before.
+  std::string refused();
+  /// As MessageTransport::write_last().
+  void tell_last(double value) noexcept;
+
   // An instrument that was unplugged may have forgotten what it was told: the first of these that
-  // reaches it again opens the dialogue anew, with its identity checked, before it does its own.
+  // reaches it again begins the dialogue anew, with its identity checked, before it does its own.
 
   /// Asks again once when no answer came, or one that is not to this question: a question changes
   /// nothing. What the failed one left in the error queue is taken out of it.
@@ -52,7 +71,10 @@ class ScpiDialogue {
   ScpiDialogue(std::string name, const config::ScpiDevice& device,
                std::unique_ptr<MessageTransport> transport);
   /// Clear, identity, old errors, initialisation.
-  Status begin();
+  Status begin_anew();
+  /// The description's `set` with the value in it.
+  std::string set_text(double value) const;
+  Error no_number(const std::string& question, const std::string& answer) const;
   /// Begins anew after the instrument was gone.
   Status resume();
   /// The error as the dialogue's; takes note when the instrument is gone.
@@ -71,7 +93,8 @@ class ScpiDialogue {
   double set_tolerance_;  ///< within it two values are one setting
   std::string error_query_;
   std::unique_ptr<MessageTransport> transport_;
-  bool lost_ = false;  ///< since the dialogue was begun
+  bool lost_ = true;   ///< it may not know what begin() tells it
+  bool told_ = false;  ///< the queue may hold errors about what it was told past all checks
 };
 
 }  // namespace fogbench::drivers

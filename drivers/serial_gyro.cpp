@@ -41,20 +41,18 @@ SerialGyro::SerialGyro(std::string name, const config::GyroConfig& config,
       parser_(config.device),
       last_read_(clock.now()) {}
 
-Result<std::unique_ptr<SerialGyro>> SerialGyro::open(std::string name,
-                                                     const config::GyroConfig& config,
-                                                     std::unique_ptr<SerialTransport> transport,
-                                                     Clock& clock) {
+Result<std::unique_ptr<SerialGyro>> SerialGyro::attach(std::string name,
+                                                       const config::GyroConfig& config,
+                                                       std::unique_ptr<SerialTransport> transport,
+                                                       Clock& clock) {
   if (const Status layout = check_layout(config.device); !layout) {
     return named(name, layout.error());
   }
-  std::unique_ptr<SerialGyro> gyro(
+  return std::unique_ptr<SerialGyro>(
       new SerialGyro(std::move(name), config, std::move(transport), clock));
-  if (const Status first = gyro->wait_for_first_frame(); !first) return first.error();
-  return gyro;
 }
 
-Status SerialGyro::wait_for_first_frame() {
+Status SerialGyro::begin() {
   for (std::size_t discarded = 0; discarded < kMostBytes;) {
     const auto count = transport_->read_some(parser_.space());
     if (!count) return named(name_, count.error());

@@ -13,14 +13,16 @@ namespace fogbench::drivers {
 
 class SerialGyro final : public Gyro {
  public:
-  /// Throws away what the line has kept from before, then waits for a first good frame, whose
-  /// arrival ties index to clock. `name` stands in front of every message; `clock` must outlive
-  /// the gyro. Errors: kBadInput for a layout that cannot be, kTimeout, kProtocol, the transport's.
-  static Result<std::unique_ptr<SerialGyro>> open(std::string name,
-                                                  const config::GyroConfig& config,
-                                                  std::unique_ptr<SerialTransport> transport,
-                                                  Clock& clock);
+  /// `name` stands in front of every message; `clock` must outlive the gyro. Errors: kBadInput for
+  /// a layout that cannot be.
+  static Result<std::unique_ptr<SerialGyro>> attach(std::string name,
+                                                    const config::GyroConfig& config,
+                                                    std::unique_ptr<SerialTransport> transport,
+                                                    Clock& clock);
 
+  /// Throws away what the line has kept from before, then waits for a first good frame, whose
+  /// arrival ties index to clock. Errors: kTimeout, kProtocol, the transport's.
+  Status begin() override;
   Result<std::string> identity() override { return identity_; }
   /// Silent for longer than a second and ten frame periods: kTimeout when no byte came, kProtocol
   /// when bytes came but no good frame was among them (wrong baud rate, wrong layout). Good frames
@@ -34,7 +36,6 @@ class SerialGyro final : public Gyro {
  private:
   SerialGyro(std::string name, const config::GyroConfig& config,
              std::unique_ptr<SerialTransport> transport, Clock& clock);
-  Status wait_for_first_frame();
   /// Parses what has arrived; whether the line was found empty.
   Result<bool> take(GyroBlock& out);
 

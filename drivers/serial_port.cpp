@@ -19,6 +19,7 @@
 #include <optional>
 #include <system_error>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include "drivers/deadline.hpp"
@@ -164,11 +165,6 @@ class SerialPort final : public SerialTransport {
           return std::make_unique<Line>(std::move(*opened));
         }) {}
 
-  Status connect() {
-    const auto line = line_.get();
-    return line ? Status{} : line.error();
-  }
-
   Result<std::size_t> read_some(std::span<std::byte> out) override {
     const auto line = line_.get();
     if (!line) return line.error();
@@ -198,6 +194,11 @@ class SerialPort final : public SerialTransport {
     return {};
   }
 
+  void write_last(std::span<const std::byte> bytes) noexcept override {
+    line_.last_words(
+        [&](const Line& line) { std::ignore = ::write(line.fd(), bytes.data(), bytes.size()); });
+  }
+
  private:
   /// A name such as /dev/ttyUSB0 may belong to another adapter after the first one was pulled.
   Status check_adapter() {
@@ -224,9 +225,7 @@ class SerialPort final : public SerialTransport {
 
 Result<std::unique_ptr<SerialTransport>> open_serial(const std::string& tty, std::uint32_t baud,
                                                      Clock& clock) {
-  auto port = std::make_unique<SerialPort>(tty, baud, clock);
-  if (const Status connected = port->connect(); !connected) return connected.error();
-  return Result<std::unique_ptr<SerialTransport>>(std::move(port));
+  return Result<std::unique_ptr<SerialTransport>>(std::make_unique<SerialPort>(tty, baud, clock));
 }
 
 }  // namespace fogbench::drivers

@@ -16,9 +16,9 @@
 
 namespace fogbench::drivers {
 
-/// Opens the line for this process alone and throws away what it had kept. When the adapter goes,
-/// calls return kUnplugged until its path is there again. `clock` must outlive the port. Errors:
-/// kUnplugged when the line cannot be opened or does not take the rate.
+/// The line, for this process alone; what it had kept is thrown away. The first call opens it:
+/// while that fails, the line does not take the rate, or its adapter is gone, calls return
+/// kUnplugged. `clock` must outlive the port.
 Result<std::unique_ptr<SerialTransport>> open_serial(const std::string& tty, std::uint32_t baud,
                                                      Clock& clock);
 

@@ -8,7 +8,8 @@
 //
 // A transport whose instrument is gone returns kUnplugged, at least once for each time that it
 // went: so a driver knows that the instrument may have lost what it was told. Until it is back
-// every call fails so at once; a call after that reaches it again.
+// every call fails so at once; a call after that reaches it again. One that nobody has reached yet
+// is no different from one that is gone.
 
 #include <cstddef>
 #include <cstdint>
@@ -52,6 +53,9 @@ class MessageTransport {
   virtual Result<std::string> read(Clock::Duration timeout) = 0;
   /// USB488 clear: forgets whatever is under way on both sides.
   virtual Status clear() = 0;
+  /// A message as the last thing that this process says, past whatever is under way: from any
+  /// thread, once, without waiting for room or an answer. A way that is not open stays so.
+  virtual void write_last(std::string_view /*message*/) noexcept {}
 };
 
 /// A stream of bytes.
@@ -61,6 +65,8 @@ class SerialTransport {
   /// What has arrived by now, at most out.size() bytes; 0 when nothing has. Never waits.
   virtual Result<std::size_t> read_some(std::span<std::byte> out) = 0;
   virtual Status write(std::span<const std::byte> bytes) = 0;
+  /// As MessageTransport::write_last().
+  virtual void write_last(std::span<const std::byte> /*bytes*/) noexcept {}
 };
 
 /// Everything that a bench is reached through. The turntable's is null when it is the operator's

@@ -16,13 +16,13 @@ constexpr int kPatience = 3;  ///< times the usual time of a move
 
 }  // namespace
 
-Result<std::unique_ptr<ScpiTurntable>> ScpiTurntable::open(
+Result<std::unique_ptr<ScpiTurntable>> ScpiTurntable::attach(
     std::string name, const config::TurntableConfig& config,
     std::unique_ptr<MessageTransport> transport, Clock& clock) {
   if (!config.device) {
     return Error{ErrorCode::kBadInput, name + ": is motorised but has no device description"};
   }
-  auto dialogue = ScpiDialogue::open(std::move(name), *config.device, std::move(transport));
+  auto dialogue = ScpiDialogue::attach(std::move(name), *config.device, std::move(transport));
   if (!dialogue) return dialogue.error();
   return std::unique_ptr<ScpiTurntable>(new ScpiTurntable(std::move(*dialogue), config, clock));
 }

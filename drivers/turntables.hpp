@@ -13,12 +13,13 @@ namespace fogbench::drivers {
 class ScpiTurntable final : public Turntable {
  public:
   /// `name` stands in front of every message; `clock` must outlive the turntable.
-  /// Errors: kBadInput when the description is missing, or as of the dialogue.
-  static Result<std::unique_ptr<ScpiTurntable>> open(std::string name,
-                                                     const config::TurntableConfig& config,
-                                                     std::unique_ptr<MessageTransport> transport,
-                                                     Clock& clock);
+  /// Errors: kBadInput when the description is missing, or as of the dialogue's attach.
+  static Result<std::unique_ptr<ScpiTurntable>> attach(std::string name,
+                                                       const config::TurntableConfig& config,
+                                                       std::unique_ptr<MessageTransport> transport,
+                                                       Clock& clock);
 
+  Status begin() override { return dialogue_.begin(); }
   Result<std::string> identity() override { return dialogue_.identity(); }
   /// kTimeout when it is not there after three times the usual time of a move.
   Status rotate_to(Degree azimuth) override;

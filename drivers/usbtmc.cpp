@@ -22,6 +22,8 @@ constexpr Clock::Duration kControlTimeout = 500ms;
 constexpr Clock::Duration kRecovery = 1s;
 constexpr Clock::Duration kDrainTimeout = 50ms;
 constexpr Clock::Duration kLookAgain = 5ms;
+/// For a message after which the process ends.
+constexpr Clock::Duration kLastTimeout = 100ms;
 /// In an answer about a bulk-in endpoint: its buffer holds bytes that must be read.
 constexpr std::uint8_t kHoldsBytes = 0x01;
 
@@ -35,6 +37,11 @@ Status Usbtmc::write(std::string_view message, Clock::Duration timeout) {
     if (Status aborted = abort(false, tag_); !aborted) std::ignore = clear();
   }
   return sent;
+}
+
+void Usbtmc::write_last(std::string_view message) {
+  constexpr std::uint8_t kLastTag = 255;  // tag_ is another thread's
+  std::ignore = usb_.bulk_out(encode_message(kLastTag, std::string(message) + '\n'), kLastTimeout);
 }
 
 Result<std::string> Usbtmc::read(Clock::Duration timeout) {

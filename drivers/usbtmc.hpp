@@ -60,6 +60,8 @@ class Usbtmc {
   Result<std::string> read(Clock::Duration timeout);
   /// Forgets whatever is under way on both sides.
   Status clear();
+  /// From any thread, whatever the others are at: one message, and nothing after it.
+  void write_last(std::string_view message);
   /// USB488's serial poll.
   Result<std::uint8_t> status_byte();
 

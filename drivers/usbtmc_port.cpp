@@ -25,13 +25,15 @@ class UsbtmcPort final : public MessageTransport {
       : conversation_(clock, [connection]() -> Result<std::unique_ptr<Conversation>> {
           auto usb = open_libusb_device(connection);
           if (!usb) return usb.error();
-          return std::make_unique<Conversation>(std::move(*usb));
+          auto conversation = std::make_unique<Conversation>(std::move(*usb));
+          // Whoever spoke last may have been killed in the middle of a message.
+          if (Status cleared = conversation->talk.clear();
+              !cleared && cleared.error().code == ErrorCode::kUnplugged) {
+            return cleared.error();
+          }
+          return conversation;
         }) {}
 
-  Status reach() {
-    const auto reached = conversation_.get();
-    return reached ? Status{} : reached.error();
-  }
   Status write(std::string_view message) override {
     return with([&](Usbtmc& talk) { return talk.write(message, kTransferTimeout); });
   }
@@ -40,6 +42,9 @@ class UsbtmcPort final : public MessageTransport {
   }
   Status clear() override {
     return with([](Usbtmc& talk) { return talk.clear(); });
+  }
+  void write_last(std::string_view message) noexcept override {
+    conversation_.last_words([&](Conversation& last) { last.talk.write_last(message); });
   }
 
  private:
@@ -59,9 +64,7 @@ class UsbtmcPort final : public MessageTransport {
 
 Result<std::unique_ptr<MessageTransport>> open_usbtmc(const config::UsbConnection& connection,
                                                       Clock& clock) {
-  auto port = std::make_unique<UsbtmcPort>(connection, clock);
-  if (const Status reached = port->reach(); !reached) return reached.error();
-  return Result<std::unique_ptr<MessageTransport>>(std::move(port));
+  return Result<std::unique_ptr<MessageTransport>>(std::make_unique<UsbtmcPort>(connection, clock));
 }
 
 }  // namespace fogbench::drivers

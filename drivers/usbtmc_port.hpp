@@ -10,10 +10,10 @@
 
 namespace fogbench::drivers {
 
-/// Claims the USBTMC interface of the device with this serial number, from the kernel's own driver
-/// where it has it. When it is pulled, calls return kUnplugged until a device with the same serial
-/// number is there again. `clock` must outlive the port. Errors: kUnplugged, which says what is
-/// there instead.
+/// The device with this serial number. The first call claims its USBTMC interface, from the
+/// kernel's own driver where it has it, and clears whatever is under way on it. While no device
+/// with the serial number is there, calls return kUnplugged, which says what is there instead.
+/// `clock` must outlive the port.
 Result<std::unique_ptr<MessageTransport>> open_usbtmc(const config::UsbConnection& connection,
                                                       Clock& clock);
 

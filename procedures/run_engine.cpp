@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "drivers/named_error.hpp"
+#include "drivers/safe_state.hpp"
 #include "procedures/engine_run.hpp"
 #include "procedures/estimate.hpp"
 #include "procedures/run_state.hpp"
@@ -131,7 +132,7 @@ Result<RunEnd> RunEngine::Run::finish(const Status& outcome) {
   const bool aborted = !outcome && outcome.error().code == ErrorCode::kAborted;
   enter(outcome ? RunEvent::kDone : (aborted ? RunEvent::kAbort : RunEvent::kFail));
   try_to_report("coils to 0 A, heaters off");
-  const auto safe = make_safe(engine_.bench_);
+  const Status safe = drivers::make_safe(engine_.bench_).status();
 
   RunEnd end;
   end.outcome =

@@ -103,9 +103,4 @@ class RunEngine {
   std::atomic<bool> pause_requested_{false};
 };
 
-/// Coils to 0 A and read back, heaters off and read back: the one routine for abort, fault, signal,
-/// start-up after an unclean end, and the normal end. Tries every instrument even when one fails;
-/// the error then names all that failed.
-Status make_safe(drivers::Bench& bench);
-
 }  // namespace fogbench::procedures

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "drivers/safe_state.hpp"
 #include "procedures/check_limits.hpp"
 #include "procedures/run_session.hpp"
 
@@ -182,10 +183,7 @@ Status RunSession::switch_off() {
   energised_ = false;
   horizontal_ = vertical_ = Ampere{};
   watch_.guard_field(false);
-  const auto horizontal = bench_.coil_horizontal->make_safe();
-  const auto vertical = bench_.coil_vertical->make_safe();
-  if (!horizontal) return horizontal;
-  if (!vertical) return vertical;
+  if (const Status off = drivers::coils_off(bench_).status(); !off) return off;
   const auto azimuth = bench_.turntable->azimuth();
   return azimuth ? Status{} : azimuth.error();
 }

@@ -64,8 +64,8 @@ struct Supply {
                      .maximum = 4.0,
                      .read_back_tolerance = 0.01,
                      .settle = config::Seconds{0.0}};
-    auto supply = drivers::ScpiCoilSupply::open(
-        "coil", config, std::make_unique<support::FakeMessages>(far), clock);
+    auto supply = drivers::begun(drivers::ScpiCoilSupply::attach(
+        "coil", config, std::make_unique<support::FakeMessages>(far), clock));
     return supply ? std::move(*supply) : nullptr;
   }
   support::FakeScpi far;

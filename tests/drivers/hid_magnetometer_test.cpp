@@ -45,8 +45,8 @@ class HidMagnetometerTest : public testing::Test {
     far_.reports.push_back(report(field_ut, sequence, status));
   }
   Result<std::unique_ptr<HidMagnetometer>> open() {
-    return HidMagnetometer::open("magnetometer", device_, std::make_unique<support::FakeHid>(far_),
-                                 clock_);
+    return begun(HidMagnetometer::attach("magnetometer", device_,
+                                         std::make_unique<support::FakeHid>(far_), clock_));
   }
   /// Opened, with only what is sent from now on to come.
   std::unique_ptr<HidMagnetometer> opened() {

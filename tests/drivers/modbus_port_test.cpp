@@ -196,13 +196,15 @@ TEST_P(ModbusPort, SaysAtOnceThatItIsGoneAndFindsItAgain) {
   EXPECT_EQ(*read(*port, 1), 101);
 }
 
-TEST_P(ModbusPort, WhereNobodyIsThereItCannotBeOpened) {
+TEST_P(ModbusPort, WhereNobodyIsThereACallSaysSo) {
   unplug();
-  const auto opened = is_tcp() ? open_modbus(config::TcpConnection{"127.0.0.1", port_}, 1, clock_)
-                               : open_modbus(config::RtuConnection{pty_.path(), 9600}, 1, clock_);
-  ASSERT_FALSE(opened);
-  EXPECT_EQ(opened.error().code, ErrorCode::kUnplugged);
-  EXPECT_THAT(opened.error().message, HasSubstr("cannot connect to"));
+  const auto port = is_tcp() ? open_modbus(config::TcpConnection{"127.0.0.1", port_}, 1, clock_)
+                             : open_modbus(config::RtuConnection{pty_.path(), 9600}, 1, clock_);
+  ASSERT_TRUE(port);
+  const auto answer = read(**port, 1);
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, ErrorCode::kUnplugged);
+  EXPECT_THAT(answer.error().message, HasSubstr("cannot connect to"));
 }
 
 }  // namespace

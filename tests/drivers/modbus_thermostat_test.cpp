@@ -56,8 +56,8 @@ class ModbusThermostatTest : public testing::Test {
     }
   }
   Result<std::unique_ptr<ModbusThermostat>> open() {
-    return ModbusThermostat::open("thermostat", device_,
-                                  std::make_unique<support::FakeModbus>(far_), clock_);
+    return begun(ModbusThermostat::attach("thermostat", device_,
+                                          std::make_unique<support::FakeModbus>(far_), clock_));
   }
   std::unique_ptr<ModbusThermostat> opened() {
     auto thermostat = open();
@@ -306,6 +306,48 @@ TEST_F(ModbusThermostatTest, TemperaturesThatStandStillAreStaleWhereTheyMayNot) 
   EXPECT_EQ(reading.error().message, "thermostat: no temperature has moved by a bit for 3.0 s");
   write("temperature_ambient", 21.4);
   EXPECT_TRUE(thermostat->read());
+}
+
+TEST_F(ModbusThermostatTest, IsSwitchedOffByOneWriteAndBelievedByItsReadBack) {
+  const auto thermostat = opened();
+  ASSERT_TRUE(thermostat->switch_off());
+  EXPECT_EQ(far_.log, (std::vector<std::string>{"write 3+1"}));
+  write("boost_power", 0.0);
+  write("normal_power", 0.0);
+  EXPECT_TRUE(thermostat->confirm_off());
+}
+
+TEST_F(ModbusThermostatTest, IsSwitchedOffWhateverItsSensorsAndItsModeSay) {
+  far_.words[spec("temperature_working_1").address] = 0x7FC0;  // not a number
+  write("temperature_ambient", -200.0);
+  write("mode", 42.0);  // somebody's manual mode
+  write("boost_power", 0.0);
+  write("normal_power", 0.0);
+  auto thermostat = ModbusThermostat::attach("thermostat", device_,
+                                             std::make_unique<support::FakeModbus>(far_), clock_);
+  ASSERT_TRUE(thermostat) << thermostat.error().message;
+  EXPECT_FALSE((*thermostat)->begin());
+  EXPECT_TRUE((*thermostat)->switch_off());
+  EXPECT_TRUE((*thermostat)->confirm_off());
+  EXPECT_EQ(far_.words[3], 0);
+}
+
+TEST_F(ModbusThermostatTest, IsNotOffWhileItsHeatersDrawPower) {
+  const auto thermostat = opened();
+  ASSERT_TRUE(thermostat->switch_off());
+  const Clock::Instant asked = clock_.now();
+  const Status off = thermostat->confirm_off();
+  ASSERT_FALSE(off);
+  EXPECT_NE(off.error().message.find("the heaters still draw 9.8 W"), std::string::npos)
+      << off.error().message;
+  EXPECT_EQ(clock_.now() - asked, 900ms) << "a controller is given time to refresh its registers";
+}
+
+TEST_F(ModbusThermostatTest, IsNotOffWhileItsModeReadsBackOtherwise) {
+  const auto thermostat = opened();
+  far_.write_failures.push_back({timeout_, false});
+  EXPECT_EQ(thermostat->switch_off().error().code, ErrorCode::kTimeout);
+  EXPECT_EQ(thermostat->confirm_off().error().code, ErrorCode::kDevice);
 }
 
 }  // namespace

@@ -61,8 +61,8 @@ class ScpiCoilSupplyTest : public testing::Test {
     support::FakeMessages inner_;
   };
   Result<std::unique_ptr<ScpiCoilSupply>> open() {
-    return ScpiCoilSupply::open("coil_vertical", config_, std::make_unique<LiveMessages>(*this),
-                                clock_);
+    return begun(ScpiCoilSupply::attach("coil_vertical", config_,
+                                        std::make_unique<LiveMessages>(*this), clock_));
   }
   std::unique_ptr<ScpiCoilSupply> enabled() {
     auto supply = open();
@@ -156,27 +156,57 @@ TEST_F(ScpiCoilSupplyTest, ARefusalOfTheInstrumentIsADeviceErrorWithItsWords) {
   EXPECT_NE(status.error().message.find("-222"), std::string::npos);
 }
 
-TEST_F(ScpiCoilSupplyTest, MakesSafeByZeroReadBackAndOutputOff) {
+TEST_F(ScpiCoilSupplyTest, IsSwitchedOffByZeroAndOutputOffAndAskedAfterItHasSettled) {
   const auto supply = enabled();
   ASSERT_TRUE(supply->set_current(Ampere{3.0}));
   far_.sent.clear();
-  ASSERT_TRUE(supply->make_safe());
-  EXPECT_EQ(far_.sent, (std::vector<std::string>{"CURR 0.000000", "SYST:ERR?", "MEAS:CURR?",
-                                                 "OUTP OFF", "SYST:ERR?"}));
+  ASSERT_TRUE(supply->switch_off());
+  EXPECT_EQ(far_.sent, (std::vector<std::string>{"CURR 0.000000", "OUTP OFF"}));
   EXPECT_FALSE(on_);
+  const Clock::Instant told = clock_.now();
+  ASSERT_TRUE(supply->confirm_off());
+  EXPECT_EQ(far_.sent,
+            (std::vector<std::string>{"CURR 0.000000", "OUTP OFF", "MEAS:CURR?", "SYST:ERR?"}));
+  EXPECT_EQ(clock_.now() - told, 320ms);
 }
 
-TEST_F(ScpiCoilSupplyTest, MakingSafeGoesOnAfterAFailureAndReportsTheFirst) {
+TEST_F(ScpiCoilSupplyTest, SwitchingOffGoesOnAfterAFailureAndReportsTheFirst) {
   const auto supply = enabled();
   ASSERT_TRUE(supply->set_current(Ampere{3.0}));
-  // Neither the zero nor the question whether it was heard gets through.
-  far_.write_failures = {{ErrorCode::kTimeout, "no answer"}, {ErrorCode::kDevice, "gone"}};
-  const Status status = supply->make_safe();
+  far_.write_failures = {{ErrorCode::kTimeout, "no answer"}};
+  const Status status = supply->switch_off();
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::kTimeout);
   EXPECT_FALSE(on_);
+  EXPECT_TRUE(supply->switch_off());
   EXPECT_EQ(set_a_, 0.0);
-  EXPECT_TRUE(supply->make_safe());
+}
+
+TEST_F(ScpiCoilSupplyTest, AStrangerIsSwitchedOffToo) {
+  config_.device.identity = "ANOTHER,SUPPLY";
+  auto supply = ScpiCoilSupply::attach("coil_vertical", config_,
+                                       std::make_unique<LiveMessages>(*this), clock_);
+  ASSERT_TRUE(supply) << supply.error().message;
+  set_a_ = 3.0;
+  on_ = true;
+  ASSERT_TRUE((*supply)->switch_off());
+  EXPECT_EQ(set_a_, 0.0);
+  EXPECT_FALSE(on_);
+  EXPECT_TRUE((*supply)->confirm_off());
+  EXPECT_EQ((*supply)->begin().error().code, ErrorCode::kDevice);
+}
+
+TEST_F(ScpiCoilSupplyTest, ARefusalToSwitchOffIsToldAndIsNotTheNextCommands) {
+  const auto supply = enabled();
+  far_.obey = [&](const std::string& text) {
+    if (text == "OUTP OFF") far_.errors.emplace_back("-221,\"Settings conflict\"");
+  };
+  ASSERT_TRUE(supply->switch_off());
+  EXPECT_TRUE(supply->set_current(Ampere{0.0}));
+  ASSERT_TRUE(supply->switch_off());
+  const Status off = supply->confirm_off();
+  ASSERT_FALSE(off);
+  EXPECT_NE(off.error().message.find("switching off was refused: -221"), std::string::npos);
 }
 
 TEST_F(ScpiCoilSupplyTest, AnOutputThatCannotBeSwitchedIsOnlySetToZero) {
@@ -184,7 +214,7 @@ TEST_F(ScpiCoilSupplyTest, AnOutputThatCannotBeSwitchedIsOnlySetToZero) {
   config_.device.output_off.clear();
   const auto supply = enabled();
   ASSERT_TRUE(supply->set_current(Ampere{1.0}));
-  ASSERT_TRUE(supply->make_safe());
+  ASSERT_TRUE(supply->switch_off());
   EXPECT_EQ(set_a_, 0.0);
   EXPECT_FALSE(far_.was_sent(""));
 }

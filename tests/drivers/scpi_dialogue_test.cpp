@@ -265,10 +265,9 @@ TEST_F(ScpiDialogueTest, NumbersAreReadAsInstrumentsWriteThem) {
 
 TEST_F(ScpiDialogueTest, ASetWithoutAPlaceForTheValueIsBadInput) {
   device_.set = "CURR";
-  ScpiDialogue dialogue = opened();
-  const Status status = dialogue.set(1.0);
-  ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().code, ErrorCode::kBadInput);
+  const auto dialogue = open();
+  ASSERT_FALSE(dialogue);
+  EXPECT_EQ(dialogue.error().code, ErrorCode::kBadInput);
 }
 
 }  // namespace

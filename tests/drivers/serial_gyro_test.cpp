@@ -29,7 +29,8 @@ class SerialGyroTest : public testing::Test {
     }
   }
   Result<std::unique_ptr<SerialGyro>> open() {
-    return SerialGyro::open("gyro", config_, std::make_unique<support::FakeSerial>(line_), clock_);
+    return begun(
+        SerialGyro::attach("gyro", config_, std::make_unique<support::FakeSerial>(line_), clock_));
   }
 
   VirtualClock clock_;

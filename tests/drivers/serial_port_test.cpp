@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 #include <sys/ioctl.h>
 
+#include <atomic>
+#include <thread>
+
 #include "tests/support/pty.hpp"
 
 namespace fogbench::drivers {
@@ -19,7 +22,8 @@ class SerialPortTest : public testing::Test {
   std::unique_ptr<SerialTransport> open(std::uint32_t baud = 921600) {
     auto port = open_serial(pty_.path(), baud, clock_);
     EXPECT_TRUE(port) << port.error().message;
-    return port ? std::move(*port) : nullptr;
+    EXPECT_TRUE((*port)->write({}));  // which opens the line
+    return std::move(*port);
   }
   /// What comes within a second.
   static std::string read(SerialTransport& port, std::size_t count) {
@@ -87,15 +91,20 @@ TEST_F(SerialPortTest, ThrowsAwayWhatTheLineHadKept) {
 
 TEST_F(SerialPortTest, AMissingLineIsNamed) {
   const auto port = open_serial("/dev/no-such-line", 9600, clock_);
-  ASSERT_FALSE(port);
-  EXPECT_EQ(port.error().code, ErrorCode::kUnplugged);
-  EXPECT_EQ(port.error().message, "cannot open /dev/no-such-line: No such file or directory");
+  ASSERT_TRUE(port);
+  std::byte byte{};
+  const auto count = (*port)->read_some({&byte, 1});
+  ASSERT_FALSE(count);
+  EXPECT_EQ(count.error().code, ErrorCode::kUnplugged);
+  EXPECT_EQ(count.error().message, "cannot open /dev/no-such-line: No such file or directory");
 }
 
 TEST_F(SerialPortTest, WhatIsNoSerialLineIsRefused) {
   const auto port = open_serial("/dev/null", 9600, clock_);
-  ASSERT_FALSE(port);
-  EXPECT_THAT(port.error().message, HasSubstr("/dev/null is not a serial line"));
+  ASSERT_TRUE(port);
+  const Status written = (*port)->write({});
+  ASSERT_FALSE(written);
+  EXPECT_THAT(written.error().message, HasSubstr("/dev/null is not a serial line"));
 }
 
 TEST_F(SerialPortTest, SaysWithinASecondThatTheLineIsGoneAndFindsItAgain) {
@@ -148,6 +157,27 @@ TEST_F(SerialPortTest, AWriteThatTheLineDoesNotTakeEndsInATimeOut) {
   const Status written = port->write(much);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, ErrorCode::kTimeout);
+}
+
+TEST_F(SerialPortTest, TheLastWordsPassWhatIsUnderWayInAnotherThread) {
+  const auto port = open();
+  std::atomic<bool> done{false};
+  std::thread reader([&] {
+    std::byte bytes[8];
+    while (!done) (void)port->read_some(bytes);
+  });
+  const std::string last = "\nCURR 0\n";
+  port->write_last(std::as_bytes(std::span(last)));
+  EXPECT_EQ(pty_.receive(last.size()), last);
+  done = true;
+  reader.join();
+}
+
+TEST_F(SerialPortTest, TheLastWordsOpenNothing) {
+  const auto port = open_serial("/dev/no-such-line", 9600, clock_);
+  ASSERT_TRUE(port);
+  const std::string last = "CURR 0\n";
+  (*port)->write_last(std::as_bytes(std::span(last)));
 }
 
 }  // namespace

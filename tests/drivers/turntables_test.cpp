@@ -58,7 +58,8 @@ class ScpiTurntableTest : public testing::Test {
     return to_ > from_ ? std::min(to_, from_ + turned) : std::max(to_, from_ - turned);
   }
   Result<std::unique_ptr<ScpiTurntable>> open() {
-    return ScpiTurntable::open("turntable", config_, std::make_unique<TurningTable>(*this), clock_);
+    return begun(
+        ScpiTurntable::attach("turntable", config_, std::make_unique<TurningTable>(*this), clock_));
   }
 
   VirtualClock clock_;

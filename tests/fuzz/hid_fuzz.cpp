@@ -62,8 +62,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Input input(data, size);
   const config::HidDevice device = fuzz::layout(input);
   drivers::VirtualClock clock;
-  auto magnetometer = drivers::HidMagnetometer::open(
-      "magnetometer", device, std::make_unique<fuzz::Reports>(input, clock), clock);
+  auto magnetometer = drivers::begun(drivers::HidMagnetometer::attach(
+      "magnetometer", device, std::make_unique<fuzz::Reports>(input, clock), clock));
   while (magnetometer && !input.empty()) {
     clock.sleep_for(std::chrono::milliseconds{input.byte() * 10});
     const auto reading = (*magnetometer)->read();

@@ -75,8 +75,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Input input(data, size);
   const config::ModbusDevice device = fuzz::map(input.byte() % 2 == 1);
   drivers::VirtualClock clock;
-  auto thermostat = drivers::ModbusThermostat::open(
-      "thermostat", device, std::make_unique<fuzz::AnyRegisters>(input), clock);
+  auto thermostat = drivers::begun(drivers::ModbusThermostat::attach(
+      "thermostat", device, std::make_unique<fuzz::AnyRegisters>(input), clock));
   while (thermostat && !input.empty()) {
     clock.sleep_for(std::chrono::seconds{1});
     const std::uint8_t choice = input.byte() % 4;

@@ -62,8 +62,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Input input(data, size);
   const auto wanted = static_cast<double>(input.number<float>());
   drivers::VirtualClock clock;
-  auto supply =
-      drivers::ScpiCoilSupply::open("coil", config, std::make_unique<fuzz::Babbler>(input), clock);
+  auto supply = drivers::begun(drivers::ScpiCoilSupply::attach(
+      "coil", config, std::make_unique<fuzz::Babbler>(input), clock));
   if (!supply) {
     fuzz::require(supply.error().message.starts_with("coil: "));
     return 0;
@@ -73,6 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto reading = (*supply)->read()) {
     fuzz::require(std::isfinite(reading->set.value) && std::isfinite(reading->measured.value));
   }
-  (void)(*supply)->make_safe();
+  (void)(*supply)->switch_off();
+  (void)(*supply)->confirm_off();
   return 0;
 }

@@ -16,48 +16,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-void energise(fogbench::test::FakePlant& plant) {
-  plant.mode = HeatingMode::kNormal;
-  plant.current_a = {1.0, -2.0};
-  plant.output_on = {true, true};
-}
-
-TEST(MakeSafe, SwitchesEverythingOff) {
-  Rig rig;
-  energise(rig.plant);
-  EXPECT_TRUE(make_safe(rig.bench));
-  EXPECT_TRUE(rig.plant.safe());
-}
-
-TEST(MakeSafe, TriesEveryInstrumentAndNamesAllThatFail) {
-  Rig rig;
-  energise(rig.plant);
-  rig.plant.fails = [](int, const std::string& name) {
-    return name == "thermostat.set_mode" || name == "coil_horizontal.make_safe";
-  };
-  const auto safe = make_safe(rig.bench);
-  ASSERT_FALSE(safe);
-  EXPECT_THAT(safe.error().message, AllOf(HasSubstr("thermostat"), HasSubstr("coil_horizontal"),
-                                          Not(HasSubstr("coil_vertical"))));
-  EXPECT_EQ(rig.plant.current_a[1], 0.0);
-}
-
-TEST(MakeSafe, ALostMessageIsSentAgain) {
-  Rig rig;
-  energise(rig.plant);
-  rig.plant.fails = [](int call, const std::string&) { return call % 2 == 1; };
-  EXPECT_TRUE(make_safe(rig.bench));
-  EXPECT_TRUE(rig.plant.safe());
-}
-
-TEST(MakeSafe, BelievesTheHeatersPowerAndNotTheCommand) {
-  Rig rig;
-  rig.plant.heaters_stuck = true;
-  const auto safe = make_safe(rig.bench);
-  ASSERT_FALSE(safe);
-  EXPECT_THAT(safe.error().message, HasSubstr("the heaters still draw 5.0 W"));
-}
-
 /// Runs everything with the calls failing that `fails` picks, and checks how the bench is left.
 /// Returns the number of calls made.
 int check_end(const std::function<bool(int, const std::string&)>& fails, const std::string& what) {

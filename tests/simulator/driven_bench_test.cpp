@@ -7,6 +7,7 @@
 
 #include "config/bench.hpp"
 #include "drivers/open_bench.hpp"
+#include "drivers/safe_state.hpp"
 #include "tests/simulator/test_bench.hpp"
 #include "tests/support/source_tree.hpp"
 
@@ -69,7 +70,7 @@ TEST_F(DrivenBench, DrivesTheFieldAndMeasuresItCalibrated) {
   const auto turned = bench_.magnetometer->read();
   ASSERT_TRUE(turned) << turned.error().message;
   EXPECT_NEAR(turned->field[2].value, reading->field[1].value, 0.5);
-  ASSERT_TRUE(bench_.coil_vertical->make_safe());
+  ASSERT_TRUE(drivers::coils_off(bench_).reached());
 }
 
 TEST_F(DrivenBench, StreamsTheGyroWithoutALostFrame) {

@@ -106,6 +106,16 @@ class FakeThermostat final : public drivers::Thermostat {
     r.normal_power = Watt{plant_.heater_w()};
     return r;
   }
+  Status switch_off() override {
+    if (auto s = plant_.call("thermostat.switch_off", true); !s) return s;
+    plant_.mode = HeatingMode::kOff;
+    return {};
+  }
+  Status confirm_off() override {
+    if (auto s = plant_.call("thermostat.confirm_off"); !s) return s;
+    if (plant_.heater_w() == 0.0) return {};
+    return Error{ErrorCode::kDevice, "thermostat: the heaters still draw 5.0 W"};
+  }
 
  private:
   FakePlant& plant_;
@@ -136,11 +146,16 @@ class FakeCoil final : public drivers::CoilSupply {
     const Ampere current{plant_.current_a[pair_]};
     return drivers::CoilReading{plant_.clock.now(), current, current};
   }
-  Status make_safe() override {
-    if (auto s = plant_.call(name_ + ".make_safe", true); !s) return s;
+  Status switch_off() override {
+    if (auto s = plant_.call(name_ + ".switch_off", true); !s) return s;
     plant_.current_a[pair_] = 0.0;
     plant_.output_on[pair_] = false;
     return {};
+  }
+  Status confirm_off() override {
+    if (auto s = plant_.call(name_ + ".confirm_off"); !s) return s;
+    if (plant_.current_a[pair_] == 0.0) return {};
+    return Error{ErrorCode::kDevice, name_ + " still carries current"};
   }
 
  private:

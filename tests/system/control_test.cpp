@@ -127,29 +127,51 @@ TEST_F(ControlTest, AnyClientAnswersAPrompt) {
   EXPECT_EQ(after["last_run"]["safe_state_reached"], true);
 }
 
-TEST_F(ControlTest, ASignalAbortsAndASecondOneEndsAtOnce) {
-  auto daemon = serve();
-  json({"run", procedure("asks", 1, "Wait."), "--json"});
-  wait_for_prompt();
-  daemon->signal(SIGTERM);
-  const Finished stopped = daemon->wait(30s);
-  EXPECT_EQ(stopped.status, 0) << stopped.err;
-  const auto run = stored("1");
-  EXPECT_EQ(run["outcome"], "aborted");
-  EXPECT_EQ(run["safe_state_reached"], true);
-  EXPECT_TRUE(has_event(run, "abort, by SIGTERM"));
+TEST_F(ControlTest, ASignalAbortsAndSeveralOfOneEventAbortOnce) {
+  for (const auto& event : {std::vector{SIGTERM}, {SIGHUP, SIGHUP}, {SIGTERM, SIGINT, SIGTERM}}) {
+    auto daemon = serve();
+    const auto job = json({"run", procedure("asks", 1, "Wait."), "--json"});
+    wait_for_prompt();
+    for (const int number : event) {
+      daemon->signal(number);
+      std::this_thread::sleep_for(5ms);
+    }
+    const Finished stopped = daemon->wait(30s);
+    EXPECT_EQ(stopped.status, 0) << stopped.err;
+    const auto runs = json({"runs", "--store", store(), "--json"})["runs"];
+    const auto run = stored(std::to_string(runs.size()));
+    EXPECT_EQ(run["outcome"], "aborted");
+    EXPECT_EQ(run["safe_state_reached"], true);
+    EXPECT_TRUE(has_event(run, event[0] == SIGHUP ? "abort, by SIGHUP" : "abort, by SIGTERM"));
+  }
+}
 
-  daemon = serve();
-  json({"run", procedure("asks", 1, "Wait."), "--json"});
-  wait_for_prompt();
-  // Both are there when it wakes.
-  daemon->signal(SIGSTOP);
+TEST_F(ControlTest, ASignalThreeSecondsAfterTheFirstEndsAtOnce) {
+  // In real time the turntable takes 20 s, and an abort waits for it.
+  auto daemon =
+      std::make_unique<Process>(command({"--bench", "simulated", "--store", store()}, "fogbenchd"));
+  for (int i = 0; i < 300 && fogbench({"status"}).status != 0; ++i) {
+    std::this_thread::sleep_for(100ms);
+  }
+  const auto turn = folder_.file(
+      "turn.json", R"({"name": "turn", "steps": [{"step": "rotate", "azimuth_deg": 90}]})");
+  json({"run", turn.string(), "--json"});
+  wait_until([](const auto& now) {
+    return now["run"].is_object() &&
+           now["run"]["says"].template get<std::string>().find("90 deg") != std::string::npos;
+  });
   daemon->signal(SIGTERM);
+  std::this_thread::sleep_for(1s);
+  daemon->signal(SIGTERM);
+  std::this_thread::sleep_for(2500ms);
+  EXPECT_EQ(status()["stopping"], true) << "the second one came too soon";
   daemon->signal(SIGINT);
-  daemon->signal(SIGCONT);
-  const Finished forced = daemon->wait(30s);
+  const Finished forced = daemon->wait(10s);
   EXPECT_EQ(forced.status, 4) << forced.err;
-  EXPECT_NE(forced.err.find("NOT in its safe state"), std::string::npos) << forced.err;
+  EXPECT_NE(
+      forced.err.find("a second signal, SIGINT: ending at once, the bench is NOT in its safe"),
+      std::string::npos)
+      << forced.err;
 
   daemon = serve();  // what the forced end left is no hindrance
   json({"run", procedure("asks", 1, "Wait."), "--json"});

@@ -116,7 +116,7 @@ TEST_F(FogbenchTest, ASignalAbortsToTheSafeStateAndTheRecordSaysSo) {
     EXPECT_EQ(done.status, 4);
     EXPECT_NE(done.err.find("aborted"), std::string::npos) << done.err;
     EXPECT_NE(done.err.find("in its safe state"), std::string::npos) << done.err;
-    EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;
+    EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 2) << done.err;
   }
   const auto runs = json({"runs", "--store", store(), "--json"})["runs"];
   ASSERT_EQ(runs.size(), signals.size());

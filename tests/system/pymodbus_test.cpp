@@ -74,8 +74,8 @@ std::unique_ptr<drivers::ModbusThermostat> reach(const Connection& connection,
   for (int tries = 0; tries < 100; ++tries) {
     auto port = drivers::open_modbus(connection, modbus.unit_id, clock);
     if (port) {
-      auto thermostat =
-          drivers::ModbusThermostat::open("thermostat", modbus, std::move(*port), clock);
+      auto thermostat = drivers::begun(
+          drivers::ModbusThermostat::attach("thermostat", modbus, std::move(*port), clock));
       if (thermostat) return std::move(*thermostat);
       why = thermostat.error().message;
     } else {
