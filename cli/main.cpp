@@ -33,6 +33,7 @@ fogbench::daemon::ManualText manual_text() {
       "what to run. Results go to standard output, progress and messages to standard error.",
       {{"FOGBENCH_STORE", "The run log to use, unless --store is given."},
        {"FOGBENCH_SOCKET", "The daemon's control socket, unless --socket is given."},
+       {"FOGBENCH_LOCKS", "Where the locks on instruments are, as for fogbenchd(8)."},
        {"FOGBENCH_CONFIG_DIR", "Where the ready files are, instead of beside the program."}},
       {{"~/.local/state/fogbench/fogbench.db", "The user's run log."},
        {"/var/lib/fogbench/fogbench.db", "The service's run log, for the group fogbench."},

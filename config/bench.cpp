@@ -58,8 +58,14 @@ bool check(const Place& at, const InstrumentConfig& i) {
 }
 
 bool check(const Place& at, const ThermostatConfig& t) {
-  return check(at, static_cast<const InstrumentConfig&>(t)) &&
-         check_scheme(at, t, {"tcp:", "rtu:"}, "a thermostat on tcp: or rtu:");
+  if (!check(at, static_cast<const InstrumentConfig&>(t)) ||
+      !check_scheme(at, t, {"tcp:", "rtu:"}, "a thermostat on tcp: or rtu:")) {
+    return false;
+  }
+  return !t.connection.starts_with("rtu:") || is_unit_of_serial_line(t.device.unit_id) ||
+         (at / "device")
+             .fail(fmt::format("unit_id is {}; expected 1 to 247 on a serial line",
+                               t.device.unit_id));
 }
 
 bool check(const Place& at, const MagnetometerConfig& m) {

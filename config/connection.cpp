@@ -51,6 +51,10 @@ std::optional<TcpConnection> parse_tcp(std::string_view rest) {
 std::optional<RtuConnection> parse_rtu(std::string_view rest) {
   RtuConnection rtu;
   auto last = take_last(rest);
+  if (last == "echo") {
+    rtu.echoes = true;
+    last = take_last(rest);
+  }
   if (last && last->size() == 3 && last->front() == '8') {
     rtu.parity = (*last)[1];
     rtu.stop_bits = (*last)[2] - '0';
@@ -118,7 +122,8 @@ Result<Connection> parse_connection(std::string_view text) {
   if (scheme == "rtu:") {
     return made<RtuConnection>(
         text, parse_rtu(rest),
-        "rtu:TTY:BAUD or rtu:TTY:BAUD:8E1, such as rtu:/dev/ttyUSB0:9600, with a standard rate");
+        "rtu:TTY:BAUD or rtu:TTY:BAUD:8E1, such as rtu:/dev/ttyUSB0:9600, with a standard rate, "
+        "and :echo behind it for an adapter that echoes");
   }
   if (scheme == "usb:") {
     return made<UsbConnection>(text, parse_usb(rest),

@@ -3,7 +3,8 @@
 //
 //   simulated                              the simulated bench, in memory
 //   tcp:ADDRESS:PORT                       Modbus TCP
-//   rtu:TTY:BAUD[:8N1]                     Modbus RTU; 8E1, 8O1 and 8N2 are the other formats
+//   rtu:TTY:BAUD[:8N1][:echo]              Modbus RTU; 8E1, 8O1 and 8N2 are the other formats.
+//                                          echo: the adapter hears what it sends itself
 //   usb:VENDOR:PRODUCT:SERIAL              a USBTMC instrument, by its serial number
 //   hid:VENDOR:PRODUCT:SERIAL              a HID instrument, by its serial number
 //   tty:TTY[:BAUD]                         a serial line, 8N1
@@ -30,11 +31,18 @@ struct TcpConnection {
   std::uint16_t port = 0;
 };
 
+/// Whether somebody with this address may answer on a serial line. 0 is everybody, who stay silent;
+/// those above 247 are reserved (Modbus over serial line V1.02, 2.2).
+constexpr bool is_unit_of_serial_line(std::uint8_t unit) {
+  return unit >= 1 && unit <= 247;
+}
+
 struct RtuConnection {
   std::string tty;
   std::uint32_t baud = 0;
   char parity = 'N';  ///< N, E or O
   int stop_bits = 1;
+  bool echoes = false;  ///< what is sent comes back before the answer
 };
 
 /// The ids alone never choose a device: two supplies of one make have the same.

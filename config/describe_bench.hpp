@@ -48,7 +48,7 @@ bool check(const Place& at, const InstrumentConfig& instrument);
 template <class Visitor>
 void describe_instrument(Visitor& v, InstrumentConfig& i) {
   v.optional("connection", i.connection,
-             "\"simulated\", or where it is: tcp:ADDRESS:PORT, rtu:TTY:BAUD[:8E1], "
+             "\"simulated\", or where it is: tcp:ADDRESS:PORT, rtu:TTY:BAUD[:8E1][:echo], "
              "usb:VENDOR:PRODUCT:SERIAL, hid:VENDOR:PRODUCT:SERIAL, tty:TTY[:BAUD]. ADDRESS is in "
              "numbers, since looking up a name has no deadline.");
   v.optional("serial_number", i.serial_number, "For the protocol of the acceptance.");

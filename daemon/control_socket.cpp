@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -94,15 +93,11 @@ Result<std::unique_ptr<ControlSocket>> ControlSocket::open(const fs::path& path,
   if (const Status ok = check_socket_path(path); !ok) return ok.error();
   if (const Status ok = make_folder(path); !ok) return ok.error();
   const std::string name = path.string();
-  const int lock =
-      ::open((name + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  auto lock = drivers::ProcessLock::take(name + ".lock", 0600, "control socket " + name);
+  if (!lock) return lock.error();
   const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  std::unique_ptr<ControlSocket> opened(new ControlSocket(socket, lock, name));
-  if (lock < 0 || socket < 0) return not_served(name);
-  if (flock(lock, LOCK_EX | LOCK_NB) != 0) {
-    return errno == EWOULDBLOCK ? not_served(name, "another fogbenchd serves it")
-                                : not_served(name);
-  }
+  std::unique_ptr<ControlSocket> opened(new ControlSocket(socket, std::move(*lock), name));
+  if (socket < 0) return not_served(name);
   struct stat there {};
   if (lstat(name.c_str(), &there) == 0) {
     if (!S_ISSOCK(there.st_mode)) return not_served(name, "there is a file that is no socket");
@@ -134,7 +129,7 @@ Result<std::unique_ptr<ControlSocket>> ControlSocket::inherited() {
   }
   fcntl(kFirstInherited, F_SETFD, FD_CLOEXEC);
   fcntl(kFirstInherited, F_SETFL, fcntl(kFirstInherited, F_GETFL) | O_NONBLOCK);
-  return std::unique_ptr<ControlSocket>(new ControlSocket(kFirstInherited, -1, name));
+  return std::unique_ptr<ControlSocket>(new ControlSocket(kFirstInherited, nullptr, name));
 }
 
 ControlSocket::~ControlSocket() {

@@ -9,6 +9,7 @@
 
 #include "config/result.hpp"
 #include "drivers/file_descriptor.hpp"
+#include "drivers/process_lock.hpp"
 
 namespace fogbench::daemon {
 
@@ -27,8 +28,8 @@ class ControlSocket {
  public:
   /// Listens, without blocking. The folder must exist, but for the default places' own, which is
   /// made with mode 0755. A lock file beside the socket, held until the end, tells a socket that a
-  /// dead daemon left from one that a living daemon serves. Errors: kDevice, one line with the
-  /// path.
+  /// dead daemon left from one that a living daemon serves. Errors: kHeld, which names that daemon;
+  /// kDevice, one line with the path.
   static Result<std::unique_ptr<ControlSocket>> open(const std::filesystem::path& path,
                                                      mode_t mode);
   /// The socket that systemd listens on for this process (LISTEN_FDS); null when there is none.
@@ -45,11 +46,11 @@ class ControlSocket {
   const std::string& name() const { return name_; }
 
  private:
-  ControlSocket(int socket, int lock, std::string name)
-      : socket_(socket), lock_(lock), name_(std::move(name)) {}
+  ControlSocket(int socket, std::unique_ptr<drivers::ProcessLock> lock, std::string name)
+      : socket_(socket), lock_(std::move(lock)), name_(std::move(name)) {}
 
   drivers::FileDescriptor socket_;
-  drivers::FileDescriptor lock_;
+  std::unique_ptr<drivers::ProcessLock> lock_;  ///< null when it was inherited
   std::string name_;
   std::filesystem::path made_;  ///< empty when it was inherited
 };

@@ -40,6 +40,8 @@ ManualText manual_text() {
       "/etc/default/fogbenchd.",
       {{"FOGBENCH_STORE", "The run log to write, unless --store is given."},
        {"FOGBENCH_SOCKET", "The control socket to serve, unless --socket is given."},
+       {"FOGBENCH_LOCKS",
+        "Where the locks on instruments are, for all who share the bench, instead of /run/lock."},
        {"FOGBENCH_CONFIG_DIR", "Where the ready files are, instead of beside the program."},
        {"NOTIFY_SOCKET, WATCHDOG_USEC, LISTEN_FDS, RUNTIME_DIRECTORY",
         "As systemd sets them: readiness, watchdog, socket activation, place of the socket."}},

@@ -213,6 +213,8 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   const auto rules = rules_of(options);
   if (!rules) return rules.error();
   raise_descriptor_limit();
+  auto queue = QueueFile::open(store);
+  if (!queue) return queue.error();
   const auto socket = open_socket(options.socket, rules->socket_mode());
   if (!socket) return socket.error();
   const auto metrics = MetricsFile::open(options.metrics, clock);
@@ -220,8 +222,7 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   const auto log = RunLog::open(store);
   if (!log) return log.error();
   DeskRecorder record(**log, desk);
-  QueueFile queue(store);
-  if (const Status taken = take_over(planned_for, store, queue, desk); !taken) return taken;
+  if (const Status taken = take_over(planned_for, store, *queue, desk); !taken) return taken;
   spdlog::info("bench {}; run log {}{}; serving {}", planned_for.bench.name, store.string(),
                planned_for.simulated ? fmt::format(", seed {}", seed) : "", (*socket)->name());
 
@@ -237,7 +238,7 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
     manager.report(desk);
     methods.totals().connections = server.connections();
     methods.totals().connections_refused = server.refused();
-    queue.update(desk);
+    queue->update(desk);
     (*metrics)->update([&] { return methods.metrics(); });
   });
   bench_thread.join();

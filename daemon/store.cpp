@@ -257,6 +257,19 @@ Result<fs::path> default_store() {
                "no place for the run log: name a file with --store, or set FOGBENCH_STORE"};
 }
 
+fs::path beside_store(const fs::path& store, std::string_view suffix) {
+  std::error_code error;
+  fs::path file = fs::weakly_canonical(store, error);
+  if (error) file = store;
+  return file += suffix;
+}
+
+void make_default_folder(const fs::path& store) {
+  const auto standard = default_store();
+  std::error_code ignored;  // whoever opens a file there says what is wrong
+  if (standard && store == *standard) fs::create_directories(store.parent_path(), ignored);
+}
+
 Result<std::unique_ptr<Database>> open_store(const fs::path& path) {
   auto database = Database::open(path, Database::Mode::kRead);
   if (!database) return database;
@@ -265,10 +278,8 @@ Result<std::unique_ptr<Database>> open_store(const fs::path& path) {
 }
 
 Result<std::unique_ptr<Database>> open_store_for_writing(const fs::path& path) {
+  make_default_folder(path);
   std::error_code error;
-  if (const auto standard = default_store(); standard && path == *standard) {
-    fs::create_directories(path.parent_path(), error);  // opening says so if it failed
-  }
   if (!fs::exists(path, error)) {
     if (const Status made = create_store(path); !made) return made.error();
   }

@@ -35,6 +35,13 @@ std::span<const MonitorColumn> monitor_columns();
 /// ~/.local/state/fogbench/fogbench.db. kBadInput when none of the variables is set.
 Result<std::filesystem::path> default_store();
 
+/// The file beside a run log that belongs to it, `suffix` ".queue": the same one by whatever link
+/// the run log is named.
+std::filesystem::path beside_store(const std::filesystem::path& store, std::string_view suffix);
+
+/// Makes the missing folders of the default run log; of any other, nothing.
+void make_default_folder(const std::filesystem::path& store);
+
 /// Opens a run log for reading. Errors: kBadInput (no such file, not a run log, newer schema),
 /// kStore (locked, unreadable).
 Result<std::unique_ptr<Database>> open_store(const std::filesystem::path& path);

@@ -7,13 +7,15 @@
 #include <system_error>
 #include <utility>
 
+#include "daemon/store.hpp"
+
 namespace fogbench::daemon {
 namespace fs = std::filesystem;
 
 namespace {
 
 fs::path writing_file(const fs::path& store) {
-  return store.string() + ".writing";
+  return beside_store(store, ".writing");
 }
 
 /// One byte from `run`, or with `all` every byte there may be.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "drivers/deadline.hpp"
+#include "drivers/process_lock.hpp"
 #include "drivers/reconnect.hpp"
 
 namespace fogbench::drivers {
@@ -54,9 +55,10 @@ Result<std::unique_ptr<HidDevice>> open_device(const config::UsbIdentity& identi
 
 class HidPort final : public HidTransport {
  public:
-  HidPort(const config::HidConnection& connection, Clock& clock)
-      : name_(fmt::format("HID device {:#06x}:{:#06x} with the serial number {}", connection.vendor,
-                          connection.product, connection.serial)),
+  HidPort(std::string name, const config::HidConnection& connection, InstrumentLock lock,
+          Clock& clock)
+      : name_(std::move(name)),
+        lock_(std::move(lock)),
         device_(clock, [this, connection] { return open_device(connection, name_); }) {}
 
   Result<std::size_t> read_report(std::span<std::uint8_t> out, Clock::Duration timeout) override {
@@ -98,6 +100,7 @@ class HidPort final : public HidTransport {
   }
 
   std::string name_;
+  InstrumentLock lock_;
   Reconnecting<HidDevice> device_;
 };
 
@@ -105,7 +108,13 @@ class HidPort final : public HidTransport {
 
 Result<std::unique_ptr<HidTransport>> open_hid(const config::HidConnection& connection,
                                                Clock& clock) {
-  return Result<std::unique_ptr<HidTransport>>(std::make_unique<HidPort>(connection, clock));
+  std::string name = fmt::format("HID device {:#06x}:{:#06x} with the serial number {}",
+                                 connection.vendor, connection.product, connection.serial);
+  // hidraw hands every report to everybody who has the device open, and takes all of theirs.
+  auto lock = lock_instrument({name});
+  if (!lock) return lock.error();
+  return Result<std::unique_ptr<HidTransport>>(
+      std::make_unique<HidPort>(std::move(name), connection, std::move(*lock), clock));
 }
 
 }  // namespace fogbench::drivers

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "drivers/process_lock.hpp"
+
 namespace fogbench::drivers {
 namespace {
 
@@ -162,6 +164,13 @@ std::string serial_of(libusb_device_handle* handle, std::uint8_t index) {
              : std::string(reinterpret_cast<const char*>(text), static_cast<std::size_t>(length));
 }
 
+/// The file by which processes have the device.
+std::string node_of(libusb_device_handle* handle) {
+  libusb_device* const device = libusb_get_device(handle);
+  return fmt::format("/dev/bus/usb/{:03}/{:03}", libusb_get_bus_number(device),
+                     libusb_get_device_address(device));
+}
+
 /// The device, opened; else an error that says what is there instead.
 Result<Handle> find_device(libusb_context* context, const config::UsbIdentity& identity,
                            const std::string& name) {
@@ -190,9 +199,13 @@ Result<Handle> find_device(libusb_context* context, const config::UsbIdentity& i
 
 }  // namespace
 
+std::string name_of(const config::UsbIdentity& identity) {
+  return fmt::format("USB device {:#06x}:{:#06x} with the serial number {}", identity.vendor,
+                     identity.product, identity.serial);
+}
+
 Result<std::unique_ptr<UsbBulk>> open_libusb_device(const config::UsbIdentity& identity) {
-  const std::string name = fmt::format("USB device {:#06x}:{:#06x} with the serial number {}",
-                                       identity.vendor, identity.product, identity.serial);
+  const std::string name = name_of(identity);
   libusb_context* made = nullptr;
   if (const int code = libusb_init(&made); code != 0) {
     return Error{ErrorCode::kUnplugged, fmt::format("no USB here: {}", libusb_strerror(code))};
@@ -204,6 +217,7 @@ Result<std::unique_ptr<UsbBulk>> open_libusb_device(const config::UsbIdentity& i
   if (!interface) return Error{ErrorCode::kUnplugged, name + " has no USBTMC interface"};
   libusb_set_auto_detach_kernel_driver(handle->get(), 1);
   if (const int code = libusb_claim_interface(handle->get(), interface->number); code != 0) {
+    if (code == LIBUSB_ERROR_BUSY) return held(name, holder_of(node_of(handle->get())));
     return Error{ErrorCode::kUnplugged,
                  fmt::format("{} cannot be claimed: {}", name, libusb_strerror(code))};
   }

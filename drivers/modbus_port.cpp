@@ -1,140 +1,71 @@
 #include "drivers/modbus_port.hpp"
 
 #include <fmt/format.h>
-#include <modbus/modbus.h>
-#include <poll.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <optional>
+#include <utility>
 
-#include "drivers/deadline.hpp"
+#include "drivers/exclusive_tty.hpp"
+#include "drivers/modbus_line.hpp"
 #include "drivers/reconnect.hpp"
 #include "drivers/usb_adapter.hpp"
 
 namespace fogbench::drivers {
 namespace {
 
-using namespace std::chrono_literals;
-
-/// What a controller may take to think; the time on the wire comes on top.
-constexpr Clock::Duration kModbusTimeout = 500ms;
-/// A frame on a serial line ends with a silence of 3.5 characters, 1.75 ms above 19200 baud
-/// (Modbus over serial line V1.02, 2.5.1.1).
-constexpr double kSilentCharacters = 3.5;
-constexpr double kShortestSilence_s = 0.00175;
-constexpr double kBitsPerCharacter = 11.0;
-/// Unit, function, address, count, byte count and check value of request and answer together.
-constexpr std::size_t kFrameBytes = 24;
-
-struct ModbusCloser {
-  void operator()(modbus_t* line) const {
-    modbus_close(line);
-    modbus_free(line);
-  }
-};
-
-/// An open line. Closed by its destructor.
-struct ModbusLine {
-  std::unique_ptr<modbus_t, ModbusCloser> context;
-};
-
-Error last_error(const std::string& what) {
-  return {ErrorCode::kUnplugged, fmt::format("{}: {}", what, modbus_strerror(errno))};
-}
-
-void set_timeout(modbus_t* context, Clock::Duration timeout) {
-  const auto us = std::chrono::duration_cast<std::chrono::microseconds>(timeout).count();
-  modbus_set_response_timeout(context, static_cast<std::uint32_t>(us / 1'000'000),
-                              static_cast<std::uint32_t>(us % 1'000'000));
-}
-
-Result<std::unique_ptr<ModbusLine>> connect(modbus_t* made, const std::string& where,
-                                            std::uint8_t unit) {
-  if (made == nullptr) return last_error(where);
-  auto line = std::make_unique<ModbusLine>();
-  line->context.reset(made);
-  set_timeout(made, kModbusTimeout);
-  // Without a limit between bytes, the limit of the answer holds for the whole of it.
-  modbus_set_byte_timeout(made, 0, 0);
-  modbus_set_error_recovery(made, MODBUS_ERROR_RECOVERY_NONE);
-  if (modbus_set_slave(made, unit) != 0 || modbus_connect(made) != 0) {
-    return last_error("cannot connect to " + where);
-  }
-  return line;
-}
+using modbus::Bytes;
 
 class ModbusPort final : public ModbusTransport {
  public:
   using Open = std::function<Result<std::unique_ptr<ModbusLine>>()>;
 
-  /// `character` is the time of one on a serial line, zero on TCP.
-  ModbusPort(std::string where, Clock::Duration character, Clock& clock, Open open)
-      : where_(std::move(where)), character_(character), line_(clock, std::move(open)) {}
+  ModbusPort(std::string where, std::uint8_t unit, InstrumentLock lock, Clock& clock, Open open)
+      : where_(std::move(where)),
+        unit_(unit),
+        lock_(std::move(lock)),
+        line_(clock, std::move(open)) {}
 
   Status read_registers(std::uint16_t address, std::span<std::uint16_t> out) override {
-    const auto line = begin(out.size());
-    if (!line) return line.error();
-    const auto count = static_cast<int>(out.size());
-    const int done = modbus_read_registers(*line, address, count, out.data());
-    return done == count ? Status{} : failure(*line, errno);
+    const auto answer = ask(modbus::encode_read(unit_, address, out.size()));
+    if (!answer) return answer.error();
+    modbus::take_registers(*answer, out);
+    return {};
   }
 
   Status write_registers(std::uint16_t address, std::span<const std::uint16_t> values) override {
-    const auto line = begin(values.size());
-    if (!line) return line.error();
-    const auto count = static_cast<int>(values.size());
-    const int done = modbus_write_registers(*line, address, count, values.data());
-    return done == count ? Status{} : failure(*line, errno);
+    const auto answer = ask(modbus::encode_write(unit_, address, values));
+    return answer ? Status{} : answer.error();
   }
 
  private:
-  bool is_serial() const { return character_ > Clock::Duration::zero(); }
-
-  /// The line, ready for a request about `words` registers.
-  Result<modbus_t*> begin(std::size_t words) {
+  Result<Bytes> ask(const Bytes& request) {
     const auto line = line_.get();
     if (!line) return line.error();
-    modbus_t* context = (*line)->context.get();
-    if (is_serial()) {
-      set_timeout(context, kModbusTimeout + character_ * (kFrameBytes + 2 * words));
-      SteadyClock().sleep_for(std::max(from_seconds(kShortestSilence_s),
-                                       from_seconds(kSilentCharacters * to_seconds(character_))));
+    auto answer = (*line)->ask(request);
+    if (!answer) {
+      const Error failure = said(answer.error());
+      if (!(*line)->is_usable()) line_.lost();
+      return failure;
     }
-    modbus_flush(context);
-    return context;
+    if (const Status refused = modbus::exception_in(*answer); !refused) return refused.error();
+    return answer;
   }
 
-  Error failure(modbus_t* context, int error) {
-    const std::string why = modbus_strerror(error);
-    const int exception = error - MODBUS_ENOBASE;
-    if (exception > 0 && exception < MODBUS_EXCEPTION_MAX) {
-      return {ErrorCode::kDevice, fmt::format("Modbus exception {} ({})", exception, why)};
-    }
-    const bool late = error == ETIMEDOUT;
-    const bool garbled = error >= EMBBADCRC && error <= EMBBADSLAVE;
-    if (is_serial() && (late || garbled)) {
-      drop_late_answer(modbus_get_socket(context));
-    } else {
-      line_.lost();
-    }
-    if (late) return {ErrorCode::kTimeout, "no answer from " + where_};
-    if (garbled) return {ErrorCode::kProtocol, fmt::format("{} answers {}", where_, why)};
-    return {ErrorCode::kUnplugged, fmt::format("{} is gone: {}", where_, why)};
-  }
-
-  static void drop_late_answer(int fd) {
-    const Deadline deadline(kModbusTimeout);
-    std::array<std::byte, 256> dropped;
-    pollfd arrived{fd, POLLIN, 0};
-    while (::poll(&arrived, 1, deadline.left_ms()) > 0) {
-      if (::read(fd, dropped.data(), dropped.size()) <= 0) return;
+  Error said(const Error& error) const {
+    switch (error.code) {
+      case ErrorCode::kTimeout:
+        return {error.code, fmt::format("{} from {}", error.message, where_)};
+      case ErrorCode::kUnplugged:
+        return {error.code, fmt::format("{} is gone: {}", where_, error.message)};
+      case ErrorCode::kProtocol:
+        return {error.code, fmt::format("{}: {}", where_, error.message)};
+      default:
+        return error;
     }
   }
-
   std::string where_;
-  Clock::Duration character_;
+  std::uint8_t unit_;
+  InstrumentLock lock_;
   Reconnecting<ModbusLine> line_;
 };
 
@@ -143,17 +74,21 @@ class ModbusPort final : public ModbusTransport {
 Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::TcpConnection& connection,
                                                      std::uint8_t unit, Clock& clock) {
   const std::string where = fmt::format("{}:{}", connection.host, connection.port);
-  const auto open = [connection, where, unit] {
-    return connect(
-        modbus_new_tcp_pi(connection.host.c_str(), std::to_string(connection.port).c_str()), where,
-        unit);
-  };
-  return Result<std::unique_ptr<ModbusTransport>>(
-      std::make_unique<ModbusPort>(where, Clock::Duration::zero(), clock, open));
+  // Several instruments may stand behind one gateway.
+  auto lock = lock_instrument({fmt::format("unit {} at {}", unit, where)});
+  if (!lock) return lock.error();
+  return Result<std::unique_ptr<ModbusTransport>>(std::make_unique<ModbusPort>(
+      where, unit, std::move(*lock), clock, [connection] { return connect_modbus(connection); }));
 }
 
 Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::RtuConnection& connection,
                                                      std::uint8_t unit, Clock& clock) {
+  if (!config::is_unit_of_serial_line(unit)) {
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("unit_id is {}; expected 1 to 247 on a serial line", unit)};
+  }
+  auto lock = lock_serial_line(connection.tty);
+  if (!lock) return lock.error();
   // Which adapter it was when first opened: another one may get its name when it is pulled.
   std::optional<std::string> adapter;
   const auto open = [connection, unit, adapter]() mutable -> Result<std::unique_ptr<ModbusLine>> {
@@ -163,15 +98,12 @@ Result<std::unique_ptr<ModbusTransport>> open_modbus(const config::RtuConnection
                    fmt::format("{} is another adapter now: found {}, expected {}", connection.tty,
                                now, *adapter)};
     }
-    auto line = connect(modbus_new_rtu(connection.tty.c_str(), static_cast<int>(connection.baud),
-                                       connection.parity, 8, connection.stop_bits),
-                        connection.tty, unit);
+    auto line = connect_modbus(connection, unit);
     if (line && !adapter) adapter = now;
     return line;
   };
-  return Result<std::unique_ptr<ModbusTransport>>(
-      std::make_unique<ModbusPort>(fmt::format("unit {} on {}", unit, connection.tty),
-                                   from_seconds(kBitsPerCharacter / connection.baud), clock, open));
+  return Result<std::unique_ptr<ModbusTransport>>(std::make_unique<ModbusPort>(
+      fmt::format("unit {} on {}", unit, connection.tty), unit, std::move(*lock), clock, open));
 }
 
 }  // namespace fogbench::drivers

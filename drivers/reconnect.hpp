@@ -25,14 +25,15 @@ class Reconnecting {
   /// `clock` must outlive it. Nothing is opened yet.
   Reconnecting(Clock& clock, Open open) : clock_(clock), open_(std::move(open)) {}
 
-  /// The handle, opened when it is not. An error is the last try's, as kUnplugged. The pointer is
-  /// valid until lost().
+  /// The handle, opened when it is not. An error is the last try's, as kUnplugged unless another
+  /// process has the instrument (kHeld). The pointer is valid until lost().
   Result<Handle*> get() {
     if (handle_) return handle_.get();
     if (clock_.now() < next_try_) return last_;
     auto opened = open_();
     if (!opened) {
-      last_ = {ErrorCode::kUnplugged, opened.error().message};
+      const bool held = opened.error().code == ErrorCode::kHeld;
+      last_ = {held ? ErrorCode::kHeld : ErrorCode::kUnplugged, opened.error().message};
       next_try_ = clock_.now() + pause_;
       pause_ = std::min(2 * pause_, kLongestPause);
       return last_;

@@ -2,7 +2,6 @@
 
 // Not <termios.h>: only the kernel's own structure takes rates that have no constant.
 #include <asm/termbits.h>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <pthread.h>
@@ -23,6 +22,7 @@
 #include <vector>
 
 #include "drivers/deadline.hpp"
+#include "drivers/exclusive_tty.hpp"
 #include "drivers/file_descriptor.hpp"
 #include "drivers/reconnect.hpp"
 #include "drivers/usb_adapter.hpp"
@@ -46,7 +46,7 @@ std::string reason(int error) {
 Status make_raw(int fd, std::uint32_t baud) {
   struct termios2 line {};
   if (ioctl(fd, TCGETS2, &line) != 0) {
-    return Error{ErrorCode::kUnplugged, "is not a serial line: " + reason(errno)};
+    return Error{ErrorCode::kUnplugged, "has no line settings: " + reason(errno)};
   }
   line.c_iflag = 0;
   line.c_oflag = 0;
@@ -69,17 +69,14 @@ Status make_raw(int fd, std::uint32_t baud) {
 }
 
 Result<std::unique_ptr<FileDescriptor>> open_line(const std::string& tty, std::uint32_t baud) {
-  auto line = std::make_unique<FileDescriptor>(
-      ::open(tty.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (line->get() < 0) {
-    return Error{ErrorCode::kUnplugged, fmt::format("cannot open {}: {}", tty, reason(errno))};
-  }
-  if (const Status raw = make_raw(line->get(), baud); !raw) {
+  auto line = open_exclusively(tty);
+  if (!line) return line.error();
+  const int fd = (*line)->get();
+  if (const Status raw = make_raw(fd, baud); !raw) {
     return Error{raw.error().code, tty + " " + raw.error().message};
   }
-  // Two readers would each get half of the stream.
-  ioctl(line->get(), TIOCEXCL);
-  ioctl(line->get(), TCFLSH, TCIOFLUSH);
+  shut_others_out(fd);
+  ioctl(fd, TCFLSH, TCIOFLUSH);
   return line;
 }
 
@@ -101,8 +98,6 @@ class Line {
   ~Line() {
     eventfd_write(stop_.get(), 1);
     thread_.join();
-    // A pseudo-terminal would stay closed to others for as long as its other side is open.
-    ioctl(fd(), TIOCNXCL);
   }
 
   int fd() const { return fd_->get(); }
@@ -157,8 +152,10 @@ class Line {
 
 class SerialPort final : public SerialTransport {
  public:
-  SerialPort(std::string tty, std::uint32_t baud, Clock& clock)
-      : tty_(std::move(tty)), line_(clock, [this, baud]() -> Result<std::unique_ptr<Line>> {
+  SerialPort(std::string tty, std::uint32_t baud, InstrumentLock lock, Clock& clock)
+      : tty_(std::move(tty)),
+        lock_(std::move(lock)),
+        line_(clock, [this, baud]() -> Result<std::unique_ptr<Line>> {
           auto opened = open_line(tty_, baud);
           if (!opened) return opened.error();
           if (Status same = check_adapter(); !same) return same.error();
@@ -217,6 +214,7 @@ class SerialPort final : public SerialTransport {
   }
 
   std::string tty_;
+  InstrumentLock lock_;
   std::optional<std::string> adapter_;  ///< when the line was first opened
   Reconnecting<Line> line_;
 };
@@ -225,7 +223,10 @@ class SerialPort final : public SerialTransport {
 
 Result<std::unique_ptr<SerialTransport>> open_serial(const std::string& tty, std::uint32_t baud,
                                                      Clock& clock) {
-  return Result<std::unique_ptr<SerialTransport>>(std::make_unique<SerialPort>(tty, baud, clock));
+  auto lock = lock_serial_line(tty);
+  if (!lock) return lock.error();
+  return Result<std::unique_ptr<SerialTransport>>(
+      std::make_unique<SerialPort>(tty, baud, std::move(*lock), clock));
 }
 
 }  // namespace fogbench::drivers

@@ -18,7 +18,8 @@ namespace fogbench::drivers {
 
 /// The line, for this process alone; what it had kept is thrown away. The first call opens it:
 /// while that fails, the line does not take the rate, or its adapter is gone, calls return
-/// kUnplugged. `clock` must outlive the port.
+/// kUnplugged. `clock` must outlive the port. Errors: kHeld when another process has the line,
+/// whose settings and bytes are left alone.
 Result<std::unique_ptr<SerialTransport>> open_serial(const std::string& tty, std::uint32_t baud,
                                                      Clock& clock);
 

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "drivers/libusb_device.hpp"
+#include "drivers/process_lock.hpp"
 #include "drivers/reconnect.hpp"
 #include "drivers/usbtmc.hpp"
 
@@ -21,8 +22,9 @@ struct Conversation {
 
 class UsbtmcPort final : public MessageTransport {
  public:
-  UsbtmcPort(const config::UsbConnection& connection, Clock& clock)
-      : conversation_(clock, [connection]() -> Result<std::unique_ptr<Conversation>> {
+  UsbtmcPort(const config::UsbConnection& connection, InstrumentLock lock, Clock& clock)
+      : lock_(std::move(lock)),
+        conversation_(clock, [connection]() -> Result<std::unique_ptr<Conversation>> {
           auto usb = open_libusb_device(connection);
           if (!usb) return usb.error();
           auto conversation = std::make_unique<Conversation>(std::move(*usb));
@@ -57,6 +59,7 @@ class UsbtmcPort final : public MessageTransport {
     return outcome;
   }
 
+  InstrumentLock lock_;
   Reconnecting<Conversation> conversation_;
 };
 
@@ -64,7 +67,10 @@ class UsbtmcPort final : public MessageTransport {
 
 Result<std::unique_ptr<MessageTransport>> open_usbtmc(const config::UsbConnection& connection,
                                                       Clock& clock) {
-  return Result<std::unique_ptr<MessageTransport>>(std::make_unique<UsbtmcPort>(connection, clock));
+  auto lock = lock_instrument({name_of(connection)});
+  if (!lock) return lock.error();
+  return Result<std::unique_ptr<MessageTransport>>(
+      std::make_unique<UsbtmcPort>(connection, std::move(*lock), clock));
 }
 
 }  // namespace fogbench::drivers

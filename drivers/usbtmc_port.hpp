@@ -13,7 +13,7 @@ namespace fogbench::drivers {
 /// The device with this serial number. The first call claims its USBTMC interface, from the
 /// kernel's own driver where it has it, and clears whatever is under way on it. While no device
 /// with the serial number is there, calls return kUnplugged, which says what is there instead.
-/// `clock` must outlive the port.
+/// `clock` must outlive the port. Errors: kHeld.
 Result<std::unique_ptr<MessageTransport>> open_usbtmc(const config::UsbConnection& connection,
                                                       Clock& clock);
 

@@ -127,6 +127,24 @@ INSTANTIATE_TEST_SUITE_P(
                      "value": [[1, 0, 0], [1, 0, 0], [0, 0, 1]]}])",
                      "/simulation/magnetic/sensor_matrix: cannot be inverted"}));
 
+TEST(LoadBench, AUnitThatNobodyHasOnASerialLineIsRefusedThereOnly) {
+  support::TemporaryFolder folder;
+  auto device = *read_json_file(kReady / "devices/thermostat-eurotherm.json");
+  device["unit_id"] = 255;
+  const auto path = folder.file("anybody.json", device.dump()).string();
+  const auto connected = [&](const std::string& connection) {
+    ChangedFile file;
+    return load_bench(
+        file.patch("benches/simulated.json",
+                   R"([{"op": "replace", "path": "/thermostat/device", "value": ")" + path +
+                       R"("}, {"op": "replace", "path": "/thermostat/connection", "value": ")" +
+                       connection + R"("}])"));
+  };
+  EXPECT_TRUE(connected("tcp:10.0.0.1:502"));
+  EXPECT_THAT(message_of(connected("rtu:/dev/ttyUSB0:9600")),
+              HasSubstr("/thermostat/device: unit_id is 255; expected 1 to 247 on a serial line"));
+}
+
 TEST(LoadBench, NameOfADeviceThatNoFileCanHaveIsNamed) {
   ChangedFile file;
   const std::string name(5000, 'x');  // longer than the system's longest

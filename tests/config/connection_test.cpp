@@ -41,6 +41,13 @@ TEST(Connection, ModbusRtuHasALineARateAndMayHaveAFormat) {
   EXPECT_EQ(even.baud, 19200U);
   EXPECT_EQ(even.parity, 'E');
   EXPECT_EQ(parsed<RtuConnection>("rtu:/dev/ttyS0:1200:8N2").stop_bits, 2);
+  EXPECT_FALSE(even.echoes);
+  for (const char* text : {"rtu:/dev/ttyS0:1200:echo", "rtu:/dev/ttyS0:1200:8E1:echo"}) {
+    const auto echoing = parsed<RtuConnection>(text);
+    EXPECT_TRUE(echoing.echoes);
+    EXPECT_EQ(echoing.tty, "/dev/ttyS0");
+    EXPECT_EQ(echoing.baud, 1200U);
+  }
 }
 
 TEST(Connection, UsbAndHidAreChosenByTheirSerialNumber) {
@@ -81,6 +88,8 @@ TEST(Connection, WhatIsWrongIsSaidWithWhatWasExpected) {
            {"rtu:/dev/ttyUSB0:9600:8X1", "expected rtu:TTY:BAUD"},
            {"rtu:/dev/ttyUSB0:9600:7E1", "expected rtu:TTY:BAUD"},
            {"rtu:8N1", "expected rtu:TTY:BAUD"},
+           {"rtu:/dev/ttyUSB0:9600:echo:8N1", "expected rtu:TTY:BAUD"},
+           {"rtu:/dev/ttyUSB0:9600:Echo", "expected rtu:TTY:BAUD"},
            {"usb:0x0957:0x1234", "expected usb:VENDOR:PRODUCT:SERIAL"},
            {"usb:0x0957:0x1234:", "expected usb:VENDOR:PRODUCT:SERIAL"},
            {"usb:0x10957:0x1234:S", "expected usb:VENDOR:PRODUCT:SERIAL"},

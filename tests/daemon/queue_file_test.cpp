@@ -34,7 +34,12 @@ class QueueFileTest : public testing::Test {
   std::string ready(const std::string& name) const {
     return (tests::source_tree() / "config/procedures" / (name + ".json")).string();
   }
-  Status load(RunDesk& desk) { return QueueFile(store_).load(desk, setup_, store_); }
+  Result<QueueFile> open() const {
+    auto file = QueueFile::open(store_);
+    EXPECT_TRUE(file) << file.error().message;
+    return file;
+  }
+  Status load(RunDesk& desk) { return open()->load(desk, setup_, store_); }
 
   support::TemporaryFolder folder_;
   std::filesystem::path store_{folder_ / "store.db"}, file_{folder_ / "store.db.queue"};
@@ -45,7 +50,7 @@ TEST_F(QueueFileTest, WhatWaitsOutlivesTheDaemonAndIsHeld) {
   RunDesk desk;
   enqueue(desk, ready("coil-sweep"), {{"average_s", 5.0}, {"levels_ut", std::vector{0.0, 300.0}}});
   enqueue(desk, ready("static-record"), {});
-  QueueFile(store_).update(desk);
+  open()->update(desk);
 
   RunDesk next;
   ASSERT_TRUE(load(next));
@@ -62,7 +67,7 @@ TEST_F(QueueFileTest, EachJobKeepsItsGyroAndOneWithoutTakesTheNewDaemons) {
   RunDesk desk;
   enqueue(desk, Order{ready("static-record"), {}, 0, "FOG-42"});
   enqueue(desk, ready("static-record"), {});
-  QueueFile(store_).update(desk);
+  open()->update(desk);
   const auto kept = nlohmann::json::parse(support::read_text(file_));
   EXPECT_EQ(kept[0]["gyro"], "FOG-42");
   EXPECT_FALSE(kept[1].contains("gyro")) << "as in files of old";
@@ -78,7 +83,7 @@ TEST_F(QueueFileTest, EachJobKeepsItsGyroAndOneWithoutTakesTheNewDaemons) {
 
 TEST_F(QueueFileTest, AnEmptyQueueLeavesNoFile) {
   RunDesk desk;
-  QueueFile file(store_);
+  QueueFile file = *open();
   enqueue(desk, ready("static-record"), {});
   file.update(desk);
   EXPECT_TRUE(std::filesystem::exists(file_));
@@ -86,22 +91,41 @@ TEST_F(QueueFileTest, AnEmptyQueueLeavesNoFile) {
   file.update(desk);
   EXPECT_FALSE(std::filesystem::exists(file_));
   RunDesk next;
-  EXPECT_TRUE(load(next));
+  EXPECT_TRUE(file.load(next, setup_, store_));
   EXPECT_TRUE(next.waiting().orders.empty());
 }
 
 TEST_F(QueueFileTest, AJobThatWasTakenStaysUntilItsRunIsOnRecord) {
   RunDesk desk;
-  QueueFile file(store_);
+  QueueFile file = *open();
   enqueue(desk, ready("static-record"), {});
   ASSERT_TRUE(desk.next_job());
   file.update(desk);
   RunDesk next;
-  ASSERT_TRUE(load(next));
+  ASSERT_TRUE(file.load(next, setup_, store_));
   EXPECT_EQ(next.waiting().orders.size(), 1U);
   desk.run_begun(1);
   file.update(desk);
   EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST_F(QueueFileTest, BelongsToOneProcessByWhateverNameTheStoreIsCalled) {
+  const std::filesystem::path link = folder_ / "link.db";
+  std::filesystem::create_symlink("store.db", link);
+  {
+    const auto first = open();
+    for (const auto& name : {store_, link}) {
+      const auto second = QueueFile::open(name);
+      ASSERT_FALSE(second);
+      EXPECT_EQ(second.error().code, ErrorCode::kHeld);
+      EXPECT_EQ(second.error().message,
+                "run log " + name.string() + " is held by this program already");
+    }
+  }
+  RunDesk desk;
+  enqueue(desk, ready("static-record"), {});
+  QueueFile::open(link)->update(desk);
+  EXPECT_TRUE(std::filesystem::exists(file_)) << "the queue of the store, not of a link";
 }
 
 TEST_F(QueueFileTest, WhatCanNoLongerBePlannedIsLeftOut) {
@@ -110,7 +134,7 @@ TEST_F(QueueFileTest, WhatCanNoLongerBePlannedIsLeftOut) {
       {"step": "average", "duration_s": 1, "segment": "a"}]})");
   enqueue(desk, gone.string(), {});
   enqueue(desk, ready("static-record"), {});
-  QueueFile(store_).update(desk);
+  open()->update(desk);
   std::filesystem::remove(gone);
   RunDesk next;
   ASSERT_TRUE(load(next));

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/support/own_locks.hpp"
 #include "tests/support/pty.hpp"
 
 namespace fogbench::drivers {
@@ -32,6 +33,7 @@ class OpenPortsTest : public testing::Test {
     return ports.error().message;
   }
 
+  support::OwnLocks locks_;
   support::Pty supply_1_, supply_2_, thermostat_, gyro_;
   config::BenchConfig config_;
   VirtualClock clock_;
@@ -57,7 +59,7 @@ TEST_F(OpenPortsTest, AMissingInstrumentKeepsNobodyFromTheOthersAndSaysWhatWasLo
   EXPECT_THAT(why(ports->coil_vertical->write("CURR 0")), HasSubstr("NO-SUCH-SUPPLY"));
   std::vector<std::uint16_t> words(1);
   EXPECT_THAT(why(ports->thermostat->read_registers(0, words)),
-              StartsWith("cannot connect to /dev/no-such-line"));
+              StartsWith("cannot open /dev/no-such-line"));
 }
 
 TEST_F(OpenPortsTest, ASimulatedInstrumentOnARealBenchIsBadInput) {

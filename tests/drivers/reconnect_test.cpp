@@ -35,6 +35,14 @@ TEST_F(ReconnectTest, OpensOnceAndKeepsTheLine) {
   EXPECT_EQ(tries_.size(), 1U);
 }
 
+TEST_F(ReconnectTest, SaysWhenAnotherHasItNow) {
+  Reconnecting<Line> held(clock_, []() -> Result<std::unique_ptr<Line>> {
+    return Error{ErrorCode::kHeld, "held by process 7"};
+  });
+  EXPECT_EQ(held.get().error().code, ErrorCode::kHeld);
+  EXPECT_EQ(held.get().error().code, ErrorCode::kHeld) << "between two tries, too";
+}
+
 TEST_F(ReconnectTest, ReopensAtOnceWhatWasLost) {
   ASSERT_TRUE(line_.get());
   line_.lost();

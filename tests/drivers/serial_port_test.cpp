@@ -3,11 +3,13 @@
 #include <asm/termbits.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 
 #include <atomic>
 #include <thread>
 
+#include "tests/support/own_locks.hpp"
 #include "tests/support/pty.hpp"
 
 namespace fogbench::drivers {
@@ -49,7 +51,9 @@ class SerialPortTest : public testing::Test {
     return std::nullopt;
   }
 
+  support::OwnLocks locks_;
   Pty pty_;
+  support::TemporaryFolder folder_;
   VirtualClock clock_;
 };
 
@@ -79,6 +83,45 @@ TEST_F(SerialPortTest, RunsAtRatesThatHaveNoConstant) {
     EXPECT_EQ(line.c_ospeed, baud);
     EXPECT_EQ(line.c_ispeed, baud);
   }
+}
+
+TEST_F(SerialPortTest, WhatAnotherHasIsLeftAsItIs) {
+  const auto first = open(9600);
+  pty_.send("first's");
+  const auto second = open_serial(pty_.path(), 115200, clock_);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, ErrorCode::kHeld);
+  struct termios2 line {};
+  ASSERT_EQ(ioctl(pty_.fd(), TCGETS2, &line), 0);
+  EXPECT_EQ(line.c_ospeed, 9600U);
+  EXPECT_EQ(read(*first, 7), "first's");
+}
+
+TEST_F(SerialPortTest, OneThatAnotherProgramHasLockedIsNotTaken) {
+  const int other = ::open(pty_.path().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  const auto port = open_serial(pty_.path(), 9600, clock_);
+  ASSERT_TRUE(port) << port.error().message;
+  const Status taken = (*port)->write({});
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().code, ErrorCode::kHeld);
+  EXPECT_EQ(taken.error().message, "serial line " + pty_.path() + " is held by another process");
+  close(other);
+  clock_.sleep_for(1s);
+  EXPECT_TRUE((*port)->write({}));
+}
+
+TEST_F(SerialPortTest, IsHeldWhileItIsUnpluggedAndUnderEveryName) {
+  auto first = open();
+  const auto link = folder_ / "by-id";
+  std::filesystem::create_symlink(pty_.path(), link);
+  EXPECT_EQ(open_serial(link.string(), 9600, clock_).error().code, ErrorCode::kHeld);
+  pty_.unplug();
+  EXPECT_EQ(failure_within_a_second(*first), ErrorCode::kUnplugged);
+  EXPECT_EQ(open_serial(pty_.path(), 9600, clock_).error().code, ErrorCode::kHeld);
+  first.reset();
+  pty_.plug_in();
+  EXPECT_TRUE(open());
 }
 
 TEST_F(SerialPortTest, ThrowsAwayWhatTheLineHadKept) {

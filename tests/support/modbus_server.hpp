@@ -18,9 +18,9 @@ namespace fogbench::support {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Of function 3 or 16, without what TCP and RTU put around it.
+/// Of function 3 or 16, without what else TCP and RTU put around it.
 struct ModbusRequest {
-  std::uint8_t function = 0;
+  std::uint8_t unit = 0, function = 0;
   std::uint16_t address = 0, count = 0;
   std::vector<std::uint16_t> values;
 };
@@ -91,6 +91,11 @@ class ModbusServer {
     if (listener_ >= 0) close(listener_);
   }
 
+  /// As some gateways do.
+  std::atomic<bool> closes_after_each{false};
+  /// As an adapter does that hears what the host sends; RTU only.
+  std::atomic<bool> echoes{false};
+
   std::uint16_t port() const { return port_; }
   int requests() const { return requests_; }
 
@@ -140,6 +145,7 @@ class ModbusServer {
         Bytes frame;
         ModbusRequest request;
         if (!read_exactly(fd, frame, 8) || !read_request(fd, frame, request)) break;
+        request.unit = frame[6];
         ++requests_;
         const auto pdu = answer_(request);
         if (!pdu) continue;
@@ -149,6 +155,7 @@ class ModbusServer {
         // Where the client has closed, a write must not raise SIGPIPE.
         spoil_(out);
         ::send(fd, out.data(), out.size(), MSG_NOSIGNAL);
+        if (closes_after_each) break;
       }
       close(fd);
     }
@@ -161,7 +168,9 @@ class ModbusServer {
           !read_exactly(fd, frame, 2)) {
         continue;
       }
+      request.unit = frame[0];
       ++requests_;
+      if (echoes && ::write(fd, frame.data(), frame.size()) < 0) continue;
       const auto pdu = answer_(request);
       if (!pdu) continue;
       Bytes out{frame[0]};

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/own_locks.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -65,6 +66,7 @@ class FogbenchTest : public testing::Test {
   }
 
   support::TemporaryFolder folder_;
+  support::OwnLocks locks_;
 };
 
 }  // namespace fogbench::system_tests
