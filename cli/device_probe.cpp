@@ -60,8 +60,9 @@ Result<ProbeReport> probe_at(const Device& device, const std::string& connection
   drivers::SteadyClock clock;
   const auto port = drivers::open_port(device, connection, clock);
   if (!port) return port.error();
-  if constexpr (std::is_same_v<Device, config::FrameDevice>) {
-    return drivers::probe(device, **port, clock);  // a stream is listened to for a while
+  if constexpr (std::is_same_v<Device, config::FrameDevice> ||
+                std::is_same_v<Device, config::ModbusDevice>) {
+    return drivers::probe(device, **port, clock);  // listens for a while, or asks again
   } else {
     return drivers::probe(device, **port);
   }

@@ -54,7 +54,11 @@ template <class Visitor>
 void describe(Visitor& v, ModbusDevice& d) {
   v.tag("kind", "modbus");
   v.required("name", d.name, "Make and model.");
-  v.optional("unit_id", d.unit_id, "Modbus address of the instrument.", between(1, 247));
+  v.optional(
+      "unit_id", d.unit_id,
+      "Modbus address of the instrument: 1 ... 247 on a serial line. Over TCP also 0 or 255, "
+      "where an instrument answers to nothing else.",
+      between(0, 255));
   v.optional("even_counts_only", d.even_counts_only,
              "The instrument takes even register counts only.");
   v.required("registers", d.registers,
@@ -86,6 +90,9 @@ void describe(Visitor& v, ScpiDevice& d) {
   v.optional("output_on", d.output_on, "Command that switches the output on, where it has one.");
   v.optional("output_off", d.output_off, "Command that switches the output off, where it has one.");
   v.optional("error_query", d.error_query, "Query for the oldest entry of the error queue.");
+  v.optional(
+      "busy_errors", d.busy_errors,
+      "Numbers in the error queue that only say that it is busy: the command is sent again.");
   v.required("unit", d.unit, "Unit of the value: A or deg.");
   v.required("minimum", d.minimum, "Lowest value, in its unit.");
   v.required("maximum", d.maximum, "Highest value, in its unit.");

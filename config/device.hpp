@@ -44,7 +44,7 @@ struct RegisterSpec {
 /// and optionally working_target and status.
 struct ModbusDevice {
   std::string name;
-  std::uint8_t unit_id = 1;
+  std::uint8_t unit_id = 1;       ///< 1 ... 247 on a serial line; over TCP any
   bool even_counts_only = false;  ///< Omron's 4-byte space takes even register counts only
   std::vector<RegisterSpec> registers;
   /// What to write to (and read back from) the register `mode` for each heating mode; keys off,
@@ -70,7 +70,8 @@ struct ScpiDevice {
   std::string output_on;                ///< "OUTP ON"; empty when it has none
   std::string output_off;               ///< "OUTP OFF"
   std::string error_query = "SYST:ERR?";
-  std::string unit;  ///< of the value, "A" or "deg"
+  std::vector<int> busy_errors;  ///< numbers in the error queue that only ask for time
+  std::string unit;              ///< of the value, "A" or "deg"
   double minimum = 0.0;
   double maximum = 0.0;
   double resolution = 0.0;           ///< smallest step of the output

@@ -3,8 +3,8 @@
 // speak through the transports; nothing here may be called from two threads at once, and only the
 // run engine commands.
 //
-// Errors of every call: kTimeout, kDevice, kProtocol, kStale, and kLimit for a request outside the
-// instrument's stated limits, which is refused before it reaches the wire.
+// Errors of every call: kTimeout, kDevice, kBusy, kProtocol, kStale, kLimit for a request outside
+// the instrument's stated limits, which is refused before it reaches the wire.
 
 #include <array>
 #include <cstdint>

@@ -13,7 +13,6 @@ namespace {
 
 using config::RegisterSpec;
 
-constexpr int kAttempts = 3;
 constexpr std::size_t kMostWords = 125;  ///< of one Modbus read
 
 /// A controller refreshes its registers once per cycle, some tenths of a second later at most.
@@ -36,13 +35,6 @@ std::string range_text(const RegisterSpec& spec) {
   };
   return fmt::format("{} ... {} {}", bound(spec.minimum, "any"), bound(spec.maximum, "any"),
                      spec.unit);
-}
-
-/// Lost or garbled on the way, as against refused. A connection that the other side has closed is
-/// made anew at once.
-bool may_repeat(const Error& error) {
-  return error.code == ErrorCode::kTimeout || error.code == ErrorCode::kProtocol ||
-         error.code == ErrorCode::kUnplugged;
 }
 
 }  // namespace
@@ -127,18 +119,14 @@ void ModbusThermostat::group_registers() {
   }
 }
 
-Status ModbusThermostat::read_words(std::uint16_t address, std::span<std::uint16_t> words) {
-  Status status;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    status = transport_->read_registers(address, words);
-    if (status || !may_repeat(status.error())) break;
-  }
-  return status;
+Status ModbusThermostat::read_words(std::uint16_t address, std::span<std::uint16_t> words,
+                                    const Patience& patience) {
+  return ask_again(patience, [&] { return transport_->read_registers(address, words); });
 }
 
-Result<double> ModbusThermostat::read_one(const RegisterSpec& spec) {
+Result<double> ModbusThermostat::read_one(const RegisterSpec& spec, const Patience& patience) {
   std::vector<std::uint16_t> words(word_count(spec.type));
-  if (const Status status = read_words(spec.address, words); !status) {
+  if (const Status status = read_words(spec.address, words, patience); !status) {
     return error(status.error().code, fmt::format("reading register {} at {}: {}", spec.name,
                                                   spec.address, status.error().message));
   }
@@ -166,11 +154,17 @@ Status ModbusThermostat::write_and_verify(const RegisterSpec& spec, double value
                  fmt::format("{} {} for register {} at {}, expected {}", wanted, spec.unit,
                              spec.name, spec.address, range_text(spec)));
   }
-  Status written;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    written = transport_->write_registers(spec.address, words);
-    if (!written && !may_repeat(written.error())) break;
-    const auto back = read_one(spec);
+  Patience patience(clock_, Patience::kForCommand);
+  const auto failed = [&](ErrorCode code, const std::string& why) {
+    return error(code, fmt::format("writing {} {} to register {} at {}: {}", wanted, spec.unit,
+                                   spec.name, spec.address, why));
+  };
+  for (;;) {
+    const Status written = transport_->write_registers(spec.address, words);
+    const bool is_refused = !written && written.error().code != ErrorCode::kBusy &&
+                            !Patience::may_be_lost(written.error());
+    if (is_refused) return failed(written.error().code, written.error().message);
+    const auto back = read_one(spec, patience);
     if (!back) return back.error();
     if (std::abs(*back - wanted) <= 1e-6 * std::max(1.0, std::abs(wanted))) return {};
     if (written) {
@@ -178,10 +172,12 @@ Status ModbusThermostat::write_and_verify(const RegisterSpec& spec, double value
                    fmt::format("register {} at {} was set to {} {} but reads back {} {}", spec.name,
                                spec.address, wanted, spec.unit, *back, spec.unit));
     }
+    if (patience.again(written.error())) continue;
+    const Error given_up = patience.given_up(written.error());
+    // It has just answered, so nobody needs to wait for its return.
+    const bool is_there = given_up.code == ErrorCode::kUnplugged;
+    return failed(is_there ? ErrorCode::kDevice : given_up.code, given_up.message);
   }
-  return error(written.error().code,
-               fmt::format("writing {} {} to register {} at {}: {}", wanted, spec.unit, spec.name,
-                           spec.address, written.error().message));
 }
 
 Status ModbusThermostat::set_target(Celsius target) {
@@ -210,7 +206,9 @@ Status ModbusThermostat::switch_off() {
   if (const Status encoded = write_words(spec, device_.modes.at(kOffKey), words); !encoded) {
     return named(name_, encoded.error());
   }
-  const Status written = transport_->write_registers(spec.address, words);
+  const Status written = ask_while_busy(Patience(clock_, Patience::kForReading), [&] {
+    return transport_->write_registers(spec.address, words);
+  });
   return written ? written
                  : error(written.error().code,
                          fmt::format("switching the heaters off: {}", written.error().message));
@@ -218,7 +216,7 @@ Status ModbusThermostat::switch_off() {
 
 Status ModbusThermostat::confirm_off() {
   const double off = device_.modes.at(kOffKey);
-  const auto mode = read_one(*specs_[kMode]);
+  const auto mode = read_one(*specs_[kMode], Patience(clock_, Patience::kForReading));
   if (!mode) return mode.error();
   if (*mode != off) {
     return error(ErrorCode::kDevice,
@@ -229,7 +227,7 @@ Status ModbusThermostat::confirm_off() {
     if (look > 0) clock_.sleep_for(kPowerLook);
     power_w = 0.0;
     for (const Quantity heater : {kBoostPower, kNormalPower}) {
-      const auto power = read_one(*specs_[heater]);
+      const auto power = read_one(*specs_[heater], Patience(clock_, Patience::kForReading));
       if (power) power_w += *power;
     }
     if (power_w <= kOffW) return {};
@@ -250,8 +248,9 @@ Result<HeatingMode> ModbusThermostat::mode_of(double value) const {
 
 Result<ThermostatReading> ModbusThermostat::read() {
   const Clock::Instant started = clock_.now();
+  const Patience patience(clock_, Patience::kForReading);
   for (Group& group : groups_) {
-    if (const Status status = read_words(group.address, group.words); !status) {
+    if (const Status status = read_words(group.address, group.words, patience); !status) {
       return error(status.error().code,
                    fmt::format("reading registers {} ... {}: {}", group.address,
                                group.address + group.words.size() - 1, status.error().message));

@@ -9,6 +9,7 @@
 
 #include "config/device.hpp"
 #include "drivers/instruments.hpp"
+#include "drivers/patience.hpp"
 #include "drivers/stillness.hpp"
 #include "drivers/transport.hpp"
 
@@ -27,6 +28,8 @@ class ModbusThermostat final : public Thermostat {
   Status begin() override;
   /// Modbus has no question for it: the map's name.
   Result<std::string> identity() override { return device_.name; }
+  // A busy controller is asked again for as long as a command's or a reading's Patience has it,
+  // then the error is kBusy with its exception.
   Status set_target(Celsius target) override;
   Status set_mode(HeatingMode mode) override;
   /// kStale when the registers took longer than the map's max_age to collect.
@@ -60,14 +63,15 @@ class ModbusThermostat final : public Thermostat {
                    std::unique_ptr<ModbusTransport> transport, Clock& clock);
   Status check_map();
   void group_registers();
-  /// Repeats a read that failed on the way; a refusal is final.
-  Status read_words(std::uint16_t address, std::span<std::uint16_t> words);
+  Status read_words(std::uint16_t address, std::span<std::uint16_t> words,
+                    const Patience& patience);
   /// kProtocol for a number that the register cannot sensibly hold.
   Result<double> value_of(const config::RegisterSpec& spec,
                           std::span<const std::uint16_t> words) const;
-  Result<double> read_one(const config::RegisterSpec& spec);
-  /// Writes and reads back. A write without an answer may have been executed, so it is repeated
-  /// only after the read-back has shown that it was not.
+  Result<double> read_one(const config::RegisterSpec& spec, const Patience& patience);
+  /// Writes and reads back. A write without an answer, or one that the instrument is still at work
+  /// on, may have been executed, so it is repeated only after the read-back has shown that it was
+  /// not.
   Status write_and_verify(const config::RegisterSpec& spec, double value);
   Result<HeatingMode> mode_of(double value) const;
   Error error(ErrorCode code, const std::string& message) const;

@@ -12,6 +12,7 @@
 #include "drivers/crc.hpp"
 #include "drivers/frame_parser.hpp"
 #include "drivers/number_codec.hpp"
+#include "drivers/patience.hpp"
 #include "drivers/scpi_dialogue.hpp"
 
 namespace fogbench::drivers {
@@ -86,7 +87,7 @@ ProbeRow ask(const std::string& name, const std::string& question, const std::st
 
 }  // namespace
 
-ProbeReport probe(const config::ModbusDevice& device, ModbusTransport& transport) {
+ProbeReport probe(const config::ModbusDevice& device, ModbusTransport& transport, Clock& clock) {
   ProbeReport report;
   for (const RegisterSpec& spec : device.registers) {
     if (spec.access == config::Access::kWrite) continue;
@@ -94,7 +95,8 @@ ProbeReport probe(const config::ModbusDevice& device, ModbusTransport& transport
                  {},        {},
                  spec.unit, {}};
     std::vector<std::uint16_t> words(word_count(spec.type));
-    const Status read = transport.read_registers(spec.address, words);
+    const Status read = ask_again(Patience(clock, Patience::kForReading),
+                                  [&] { return transport.read_registers(spec.address, words); });
     if (read) {
       row.raw = fmt::format("{:04X}", fmt::join(words, " "));
       take_value(read_words(spec, words), row);

@@ -29,8 +29,9 @@ struct ProbeReport {
   std::vector<std::string> notes;  ///< identity, error queue, frames a second
 };
 
-/// Every register that may be read, one request each: a refused one does not hide the others.
-ProbeReport probe(const config::ModbusDevice& device, ModbusTransport& transport);
+/// Every register that may be read, one request each: a refused one does not hide the others. A
+/// busy instrument is asked again, as it is in a run.
+ProbeReport probe(const config::ModbusDevice& device, ModbusTransport& transport, Clock& clock);
 /// Identity, set value, measured value, the oldest entry of the error queue. A description's text
 /// that is no single question is not sent.
 ProbeReport probe(const config::ScpiDevice& device, MessageTransport& transport);

@@ -18,8 +18,14 @@ struct Task {
 
 void tell(const Task& task, Safety& safety) {
   const Status told = task.actuator->switch_off();
-  if (!told) safety.failure = told.error().message;
-  if (told || told.error().code != ErrorCode::kUnplugged) safety.state = Safety::State::kCommanded;
+  if (told) {
+    safety.state = Safety::State::kCommanded;
+    return;
+  }
+  safety.failure = told.error().message;
+  const ErrorCode code = told.error().code;
+  const bool is_reached = code != ErrorCode::kUnplugged && code != ErrorCode::kHeld;
+  if (is_reached) safety.state = Safety::State::kCommanded;
 }
 
 void confirm(const Task& task, Safety& safety) {

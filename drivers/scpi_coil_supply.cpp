@@ -16,7 +16,7 @@ constexpr int kLooks = 2;
 Result<std::unique_ptr<ScpiCoilSupply>> ScpiCoilSupply::attach(
     std::string name, const config::CoilConfig& config, std::unique_ptr<MessageTransport> transport,
     Clock& clock) {
-  auto dialogue = ScpiDialogue::attach(std::move(name), config.device, std::move(transport));
+  auto dialogue = ScpiDialogue::attach(std::move(name), config.device, std::move(transport), clock);
   if (!dialogue) return dialogue.error();
   return std::unique_ptr<ScpiCoilSupply>(new ScpiCoilSupply(std::move(*dialogue), config, clock));
 }

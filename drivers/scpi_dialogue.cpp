@@ -13,6 +13,7 @@
 
 #include "config/json_file.hpp"
 #include "drivers/named_error.hpp"
+#include "drivers/patience.hpp"
 
 namespace fogbench::drivers {
 namespace {
@@ -58,7 +59,7 @@ std::optional<double> parse_scpi_number(std::string_view text) {
 }
 
 ScpiDialogue::ScpiDialogue(std::string name, const config::ScpiDevice& device,
-                           std::unique_ptr<MessageTransport> transport)
+                           std::unique_ptr<MessageTransport> transport, Clock& clock)
     : name_(std::move(name)),
       expected_identity_(device.identity),
       initialise_(device.initialise),
@@ -66,15 +67,18 @@ ScpiDialogue::ScpiDialogue(std::string name, const config::ScpiDevice& device,
       set_query_(device.set_query),
       set_tolerance_(std::max(device.resolution, kSentResolution)),
       error_query_(device.error_query),
-      transport_(std::move(transport)) {}
+      busy_errors_(device.busy_errors),
+      transport_(std::move(transport)),
+      clock_(clock) {}
 
 Error ScpiDialogue::error(ErrorCode code, const std::string& message) const {
   return {code, name_ + ": " + message};
 }
 
 Result<ScpiDialogue> ScpiDialogue::attach(std::string name, const config::ScpiDevice& device,
-                                          std::unique_ptr<MessageTransport> transport) {
-  ScpiDialogue dialogue(std::move(name), device, std::move(transport));
+                                          std::unique_ptr<MessageTransport> transport,
+                                          Clock& clock) {
+  ScpiDialogue dialogue(std::move(name), device, std::move(transport), clock);
   std::vector<std::string> all = device.initialise;
   for (const auto* text : {&device.set, &device.set_query, &device.measure_query, &device.output_on,
                            &device.output_off, &device.error_query}) {
@@ -94,8 +98,8 @@ Result<ScpiDialogue> ScpiDialogue::attach(std::string name, const config::ScpiDe
 }
 
 Result<ScpiDialogue> ScpiDialogue::open(std::string name, const config::ScpiDevice& device,
-                                        std::unique_ptr<MessageTransport> transport) {
-  auto dialogue = attach(std::move(name), device, std::move(transport));
+                                        std::unique_ptr<MessageTransport> transport, Clock& clock) {
+  auto dialogue = attach(std::move(name), device, std::move(transport), clock);
   if (!dialogue) return dialogue;
   if (const Status begun = dialogue->begin(); !begun) return begun.error();
   return dialogue;
@@ -152,7 +156,7 @@ Result<double> ScpiDialogue::look(const std::string& question) {
 std::string ScpiDialogue::refused() {
   if (lost_ || !std::exchange(told_, false)) return {};
   auto entries = drain_errors(&ScpiDialogue::ask);
-  return entries ? std::move(*entries) : std::string();
+  return entries ? std::move(entries->text) : std::string();
 }
 
 void ScpiDialogue::tell_last(double value) noexcept {
@@ -183,7 +187,7 @@ Result<std::string> ScpiDialogue::query(const std::string& question) {
     // Nor an entry about this question that the next command would be blamed for.
     if (question == error_query_) continue;
     const auto entries = drain_errors(&ScpiDialogue::ask);
-    if (entries && !entries->empty()) queue += fmt::format(" ({})", *entries);
+    if (entries && !entries->text.empty()) queue += fmt::format(" ({})", entries->text);
   }
   failure.message += queue;
   return failed(question, failure);
@@ -207,13 +211,19 @@ Error ScpiDialogue::no_number(const std::string& question, const std::string& an
 }
 
 Status ScpiDialogue::command(const std::string& text) {
+  return ask_while_busy(Patience(clock_, Patience::kForCommand),
+                        [&] { return command_once(text); });
+}
+
+Status ScpiDialogue::command_once(const std::string& text) {
   if (Status resumed = resume(); !resumed) return resumed;
   std::ignore = refused();
   if (const Status sent = transport_->write(text); !sent) return failed(text, sent.error());
   const auto errors = drain_errors(&ScpiDialogue::query);
   if (!errors) return errors.error();
-  if (errors->empty()) return {};
-  return error(ErrorCode::kDevice, fmt::format("{} was refused: {}", text, *errors));
+  if (errors->text.empty()) return {};
+  return error(errors->is_busy ? ErrorCode::kBusy : ErrorCode::kDevice,
+               fmt::format("{} was refused: {}", text, errors->text));
 }
 
 std::string ScpiDialogue::set_text(double value) const {
@@ -232,9 +242,9 @@ Status ScpiDialogue::set(double value) {
   return std::abs(*present - value) <= set_tolerance_ ? Status{} : command(text);
 }
 
-Result<std::string> ScpiDialogue::drain_errors(
+Result<ScpiDialogue::ErrorQueue> ScpiDialogue::drain_errors(
     Result<std::string> (ScpiDialogue::*put)(const std::string&)) {
-  std::string all;
+  ErrorQueue all{.text = {}, .is_busy = true};
   for (int i = 0; i < kMostErrors; ++i) {
     const auto entry = (this->*put)(error_query_);
     if (!entry) return entry.error();
@@ -245,11 +255,13 @@ Result<std::string> ScpiDialogue::drain_errors(
                                one_line(*entry)));
     }
     if (*code == 0) return all;
-    all += (all.empty() ? "" : "; ") + one_line(*entry);
+    all.text += (all.text.empty() ? "" : "; ") + one_line(*entry);
+    all.is_busy = all.is_busy &&
+                  std::find(busy_errors_.begin(), busy_errors_.end(), *code) != busy_errors_.end();
   }
-  return error(
-      ErrorCode::kProtocol,
-      fmt::format("its error queue does not end after {} entries: {}", kMostErrors, one_line(all)));
+  return error(ErrorCode::kProtocol,
+               fmt::format("its error queue does not end after {} entries: {}", kMostErrors,
+                           one_line(all.text)));
 }
 
 }  // namespace fogbench::drivers

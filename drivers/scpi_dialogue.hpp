@@ -23,13 +23,14 @@ std::optional<double> parse_scpi_number(std::string_view text);
 
 class ScpiDialogue {
  public:
-  /// Says nothing yet. `name` stands in front of every message. Errors: kBadInput for a description
+  /// Says nothing yet. `name` stands in front of every message; `clock` must outlive the dialogue.
+  /// Errors: kBadInput for a description
   /// that would send a self test, or whose `set` has no place for the value.
   static Result<ScpiDialogue> attach(std::string name, const config::ScpiDevice& device,
-                                     std::unique_ptr<MessageTransport> transport);
+                                     std::unique_ptr<MessageTransport> transport, Clock& clock);
   /// Attached and begun.
   static Result<ScpiDialogue> open(std::string name, const config::ScpiDevice& device,
-                                   std::unique_ptr<MessageTransport> transport);
+                                   std::unique_ptr<MessageTransport> transport, Clock& clock);
 
   /// Clears the line, checks the identity, empties the queue of old errors and sends the
   /// initialisation. Errors: kDevice for another instrument than described; else as below.
@@ -59,7 +60,9 @@ class ScpiDialogue {
   Result<std::string> query(const std::string& question);
   /// Asks again once when the answer is no finite number; kProtocol when it is none again.
   Result<double> query_number(const std::string& question);
-  /// Sends it once, then empties the error queue. kDevice with every entry that was in it.
+  /// Sends it, then empties the error queue. kDevice with every entry that was in it; where all of
+  /// them say that the instrument is busy it is sent again for as long as a command's Patience has
+  /// it, then kBusy.
   Status command(const std::string& text);
   /// The description's `set` with {value} replaced. When it was lost or its outcome unknown, what
   /// the instrument says that it was set to decides whether it is sent again, once.
@@ -69,7 +72,7 @@ class ScpiDialogue {
 
  private:
   ScpiDialogue(std::string name, const config::ScpiDevice& device,
-               std::unique_ptr<MessageTransport> transport);
+               std::unique_ptr<MessageTransport> transport, Clock& clock);
   /// Clear, identity, old errors, initialisation.
   Status begin_anew();
   /// The description's `set` with the value in it.
@@ -81,8 +84,13 @@ class ScpiDialogue {
   Error failed(const std::string& what, const Error& error);
   /// One question, one answer.
   Result<std::string> ask(const std::string& question);
-  /// All entries, joined; empty when there were none. `put` is how the question is put.
-  Result<std::string> drain_errors(Result<std::string> (ScpiDialogue::*put)(const std::string&));
+  Status command_once(const std::string& text);
+  struct ErrorQueue {
+    std::string text;      ///< all entries, joined; empty when there were none
+    bool is_busy = false;  ///< and nothing else is the matter
+  };
+  /// Takes everything out of it. `put` is how the question is put.
+  Result<ErrorQueue> drain_errors(Result<std::string> (ScpiDialogue::*put)(const std::string&));
 
   std::string name_;
   std::string expected_identity_;
@@ -92,7 +100,9 @@ class ScpiDialogue {
   std::string set_query_;
   double set_tolerance_;  ///< within it two values are one setting
   std::string error_query_;
+  std::vector<int> busy_errors_;
   std::unique_ptr<MessageTransport> transport_;
+  Clock& clock_;
   bool lost_ = true;   ///< it may not know what begin() tells it
   bool told_ = false;  ///< the queue may hold errors about what it was told past all checks
 };

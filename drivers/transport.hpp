@@ -24,7 +24,7 @@
 namespace fogbench::drivers {
 
 /// Modbus holding registers of one unit.
-/// Errors: kTimeout, kDevice (exception answer), kUnplugged, kProtocol.
+/// Errors: kTimeout, kDevice and kBusy (exception answer), kUnplugged, kProtocol.
 class ModbusTransport {
  public:
   virtual ~ModbusTransport() = default;

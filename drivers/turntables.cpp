@@ -22,7 +22,8 @@ Result<std::unique_ptr<ScpiTurntable>> ScpiTurntable::attach(
   if (!config.device) {
     return Error{ErrorCode::kBadInput, name + ": is motorised but has no device description"};
   }
-  auto dialogue = ScpiDialogue::attach(std::move(name), *config.device, std::move(transport));
+  auto dialogue =
+      ScpiDialogue::attach(std::move(name), *config.device, std::move(transport), clock);
   if (!dialogue) return dialogue.error();
   return std::unique_ptr<ScpiTurntable>(new ScpiTurntable(std::move(*dialogue), config, clock));
 }

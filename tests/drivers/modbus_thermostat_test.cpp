@@ -177,6 +177,46 @@ TEST_F(ModbusThermostatTest, AConnectionThatWasClosedIsUsedAgainAtOnce) {
   EXPECT_EQ(thermostat->read().error().code, ErrorCode::kUnplugged);
 }
 
+TEST_F(ModbusThermostatTest, ABusyControllerIsAskedAgainWithAPause) {
+  const auto thermostat = opened();
+  const Error busy{ErrorCode::kBusy, "Modbus exception 6 (device busy)"};
+  const auto begun = clock_.now();
+  far_.read_failures = {busy, busy, busy};
+  EXPECT_TRUE(thermostat->read());
+  EXPECT_GE(clock_.now() - begun, 300ms);
+  far_.write_failures = {{busy}, {busy}, {busy}, {busy}};
+  EXPECT_TRUE(thermostat->set_mode(HeatingMode::kOff));
+  EXPECT_EQ(far_.words[3], 0);
+}
+
+TEST_F(ModbusThermostatTest, WhatIsStillAtWorkIsNotWrittenTwice) {
+  const auto thermostat = opened();
+  far_.write_failures = {{{ErrorCode::kBusy, "Modbus exception 5"}, true}};
+  EXPECT_TRUE(thermostat->set_target(Celsius{45.0}));
+  EXPECT_EQ(far_.count("write"), 1u);
+}
+
+TEST_F(ModbusThermostatTest, OneThatStaysBusyIsAnErrorWithItsExceptionAndTheTime) {
+  const auto thermostat = opened();
+  const Error busy{ErrorCode::kBusy, "Modbus exception 6"};
+  far_.read_failures.assign(1000, busy);
+  EXPECT_EQ(thermostat->read().error().message,
+            "thermostat: reading registers 2 ... 3: Modbus exception 6, for 1.0 s");
+  far_.read_failures.clear();
+  far_.write_failures.assign(1000, {busy});
+  const Status written = thermostat->set_target(Celsius{45.0});
+  EXPECT_EQ(written.error().code, ErrorCode::kBusy);
+  EXPECT_EQ(written.error().message,
+            "thermostat: writing 45 degC to register target at 2: Modbus exception 6, for 10.0 s");
+}
+
+TEST_F(ModbusThermostatTest, WhoAnswersReadsButNoWritesIsNotGone) {
+  const auto thermostat = opened();
+  const Error closed{ErrorCode::kUnplugged, "closed"};
+  far_.write_failures = {{closed}, {closed}, {closed}};
+  EXPECT_EQ(thermostat->set_mode(HeatingMode::kOff).error().code, ErrorCode::kDevice);
+}
+
 TEST_F(ModbusThermostatTest, AnExceptionAnswerIsNotRepeated) {
   const auto thermostat = opened();
   far_.read_failures = {{ErrorCode::kDevice, "Modbus exception 4"}};

@@ -41,7 +41,7 @@ class Probe : public testing::Test {
 
 TEST_F(Probe, ShowsEveryRegisterRawBesideScaled) {
   const Transports ends = connect();
-  const ProbeReport report = probe(config_.thermostat.device, *ends.thermostat);
+  const ProbeReport report = probe(config_.thermostat.device, *ends.thermostat, clock_);
   expect_no_problem(report);
   EXPECT_EQ(report.rows.size(), config_.thermostat.device.registers.size());
   const ProbeRow& target = row(report, "target");
@@ -57,7 +57,7 @@ TEST_F(Probe, AWrongAddressOrWordOrderHidesNoOtherRegister) {
   config::ModbusDevice wrong = config_.thermostat.device;
   wrong.registers[0].address = 7;
   wrong.registers[1].word_order = config::WordOrder::kLowFirst;
-  const ProbeReport report = probe(wrong, *ends.thermostat);
+  const ProbeReport report = probe(wrong, *ends.thermostat, clock_);
   EXPECT_THAT(report.rows[0].problem, HasSubstr("exception 2"));
   EXPECT_EQ(report.rows[1].problem, "outside the limits of the description");
   EXPECT_EQ(report.rows[2].problem, "");

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+
 #include "tests/support/fake_transports.hpp"
 
 namespace fogbench::drivers {
@@ -17,7 +20,8 @@ class ScpiDialogueTest : public testing::Test {
     far_.answers = {{"*IDN?", "KEPCO,BOP 36-6M,E12345,4.10"}, {"MEAS:CURR?", "-1.112E+00"}};
   }
   Result<ScpiDialogue> open() {
-    return ScpiDialogue::open("coil", device_, std::make_unique<support::FakeMessages>(far_));
+    return ScpiDialogue::open("coil", device_, std::make_unique<support::FakeMessages>(far_),
+                              clock_);
   }
   ScpiDialogue opened() {
     auto dialogue = open();
@@ -29,6 +33,7 @@ class ScpiDialogueTest : public testing::Test {
   config::ScpiDevice device_;
   support::FakeScpi far_;
   const Error timeout_{ErrorCode::kTimeout, "no answer in 1 s"};
+  VirtualClock clock_;
 };
 
 TEST_F(ScpiDialogueTest, OpensByClearingIdentifyingForgettingOldErrorsAndInitialising) {
@@ -57,6 +62,36 @@ TEST_F(ScpiDialogueTest, NeverSendsASelfTest) {
   ASSERT_FALSE(dialogue);
   EXPECT_EQ(dialogue.error().code, ErrorCode::kBadInput);
   EXPECT_TRUE(far_.sent.empty());
+}
+
+TEST_F(ScpiDialogueTest, ACommandToABusyInstrumentIsSentAgainWithAPause) {
+  device_.busy_errors = {-213, 721};
+  ScpiDialogue dialogue = opened();
+  int busy = 3;
+  far_.obey = [&](const std::string&) {
+    if (busy-- > 0) far_.errors = {"721,\"Busy storing\""};
+  };
+  const auto begun = clock_.now();
+  EXPECT_TRUE(dialogue.set(1.5));
+  EXPECT_EQ(std::count(far_.sent.begin(), far_.sent.end(), "CURR 1.500000"), 4);
+  EXPECT_GE(clock_.now() - begun, std::chrono::milliseconds{300});
+
+  busy = 1000;
+  const Status given_up = dialogue.set(1.5);
+  ASSERT_FALSE(given_up);
+  EXPECT_EQ(given_up.error().code, ErrorCode::kBusy);
+  EXPECT_EQ(given_up.error().message,
+            "coil: CURR 1.500000 was refused: 721,\"Busy storing\", for 10.0 s");
+}
+
+TEST_F(ScpiDialogueTest, WhatElseIsTheMatterWithABusyInstrumentIsFinal) {
+  device_.busy_errors = {721};
+  ScpiDialogue dialogue = opened();
+  far_.obey = [&](const std::string&) {
+    far_.errors = {"721,\"Busy storing\"", "-222,\"Data out of range\""};
+  };
+  EXPECT_EQ(dialogue.set(99.5).error().code, ErrorCode::kDevice);
+  EXPECT_EQ(std::count(far_.sent.begin(), far_.sent.end(), "CURR 99.500000"), 1);
 }
 
 TEST_F(ScpiDialogueTest, ACommandReportsEveryEntryOfTheErrorQueue) {

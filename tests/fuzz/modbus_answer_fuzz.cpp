@@ -30,9 +30,9 @@ class AnyRegisters final : public drivers::ModbusTransport {
   Status next() {
     if (input_.empty()) return Error{ErrorCode::kDevice, "gone"};
     constexpr ErrorCode kFailures[] = {ErrorCode::kTimeout, ErrorCode::kProtocol,
-                                       ErrorCode::kDevice};
+                                       ErrorCode::kDevice, ErrorCode::kBusy};
     const std::uint8_t choice = input_.byte();
-    if (choice < 3) return Error{kFailures[choice], "the line fails"};
+    if (choice < std::size(kFailures)) return Error{kFailures[choice], "the line fails"};
     return {};
   }
   Input& input_;
