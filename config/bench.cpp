@@ -69,8 +69,17 @@ bool check(const Place& at, const ThermostatConfig& t) {
 }
 
 bool check(const Place& at, const MagnetometerConfig& m) {
-  return check(at, static_cast<const InstrumentConfig&>(m)) &&
-         check_scheme(at, m, {"hid:"}, "a magnetometer on hid:");
+  if (!check(at, static_cast<const InstrumentConfig&>(m)) ||
+      !check_scheme(at, m, {"hid:"}, "a magnetometer on hid:")) {
+    return false;
+  }
+  const auto connection = parse_connection(m.connection);
+  const auto* const hid = connection ? std::get_if<HidConnection>(&*connection) : nullptr;
+  return hid == nullptr ||
+         (hid->vendor == m.device.vendor_id && hid->product == m.device.product_id) ||
+         (at / "connection")
+             .wrong(fmt::format("hid:0x{:04x}:0x{:04x}: as {} describes itself", m.device.vendor_id,
+                                m.device.product_id, m.device.name));
 }
 
 bool check(const Place& at, const CoilConfig& c) {

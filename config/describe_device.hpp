@@ -43,10 +43,12 @@ void describe(Visitor& v, RegisterSpec& r) {
   v.optional("offset", r.offset, "Value at raw 0.");
   v.optional("word_order", r.word_order, "Which word of a 32-bit number comes first.");
   v.optional("access", r.access, "What the instrument allows.");
-  v.optional("unit", r.unit, "Unit of the value.");
-  v.optional(
-      "minimum", r.minimum,
-      "A lower value is refused before it reaches the wire, and is an error when it is read.");
+  v.optional("unit", r.unit,
+             "Unit of the value and its limits; temperatures are in degC and powers in W without "
+             "it. A count has none.");
+  v.optional("minimum", r.minimum,
+             "A lower value is refused before it reaches the wire, and is an error when it is "
+             "read. In the unit of the value.");
   v.optional("maximum", r.maximum, "A higher value likewise.");
 }
 
@@ -90,10 +92,9 @@ void describe(Visitor& v, ScpiDevice& d) {
   v.optional("output_on", d.output_on, "Command that switches the output on, where it has one.");
   v.optional("output_off", d.output_off, "Command that switches the output off, where it has one.");
   v.optional("error_query", d.error_query, "Query for the oldest entry of the error queue.");
-  v.optional(
-      "busy_errors", d.busy_errors,
-      "Numbers in the error queue that only say that it is busy: the command is sent again.");
-  v.required("unit", d.unit, "Unit of the value: A or deg.");
+  v.required("unit", d.unit,
+             "Unit of the value, of its limits, resolution and tolerance: A, mA, deg, rad, ...");
+  v.optional("scale", d.scale, "Value of one on the wire: value = number * scale.");
   v.required("minimum", d.minimum, "Lowest value, in its unit.");
   v.required("maximum", d.maximum, "Highest value, in its unit.");
   v.required("resolution", d.resolution, "Smallest step of the output, in its unit.", above(0));
@@ -111,7 +112,9 @@ void describe(Visitor& v, FieldSpec& f) {
   v.optional("type", f.type, "How the number lies in its bytes.");
   v.optional("scale", f.scale, "Value of one count: value = raw * scale + offset.");
   v.optional("offset", f.offset, "Value at raw 0.");
-  v.optional("unit", f.unit, "Unit of the value.");
+  v.optional("unit", f.unit,
+             "Unit of the value; a rate is in deg/h, a temperature in degC and a field in uT "
+             "without it. A count has none.");
 }
 
 /// A certificate's correction: calibrated = matrix * (reported - offset).
@@ -146,7 +149,7 @@ void describe(Visitor& v, HidDevice& d) {
   v.required("report_bytes", d.report_bytes, "Length of the report with its id.", at_least(2));
   v.optional("byte_order", d.byte_order, "Of the numbers in the report.");
   v.required("fields", d.fields,
-             "Numbers in the report: field_x, field_y, field_z in uT, and where it has them "
+             "Numbers in the report: field_x, field_y, field_z, and where it has them "
              "sequence and status.",
              not_empty());
   v.required("range_ut", d.range, "A field beyond it reads saturated and is an error.", above(0));
@@ -183,7 +186,7 @@ void describe(Visitor& v, FrameDevice& d) {
   v.required("frame_bytes", d.frame_bytes, "Length of a frame with header and check value.",
              at_least(4));
   v.optional("byte_order", d.byte_order, "Of the numbers in the frame.");
-  v.required("rate", d.rate, "The rotation rate; its scale takes the raw number to deg/h.");
+  v.required("rate", d.rate, "The rotation rate.");
   v.optional("temperature", d.temperature, "The gyro's temperature, where frames carry it.");
   v.optional("others", d.others, "The rest of the payload.");
   v.required("status_offset_bytes", d.status_offset_bytes, "Where the status byte lies.");

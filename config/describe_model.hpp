@@ -31,7 +31,9 @@ void describe(Visitor& v, ModelTerm& t) {
              "Inner parameters: starting values going in, estimates coming out.");
   v.optional("expression", t.expression,
              "A formula over the table's columns, for an effect that the catalogue lacks.");
-  v.optional("unit", t.unit, "Unit of the coefficient.");
+  v.optional("unit", t.unit,
+             "Unit of the coefficient: what an expression's is; an effect of the catalogue has its "
+             "own, and another is refused.");
   v.optional("standard_errors", t.standard_errors,
              "Written by a fit, by coefficient and inner parameter; what it could not determine "
              "is left out.",

@@ -4,7 +4,9 @@
 #include <cctype>
 
 #include "config/describe_device.hpp"
+#include "config/house_units.hpp"
 #include "config/json_file.hpp"
+#include "config/stated_unit.hpp"
 
 namespace fogbench::config {
 namespace {
@@ -151,7 +153,8 @@ bool check_no_self_test(const Place& at, std::string command) {
 
 template <class Device>
 bool read_kind(const Place& at, DeviceFile& out) {
-  return Codec<Device>::read(at, out.emplace<Device>(), {});
+  auto& device = out.emplace<Device>();
+  return Codec<Device>::read(at, device, {}) && take_to_house_units(at, device);
 }
 
 }  // namespace
@@ -190,11 +193,13 @@ bool check(const Place& at, const ScpiDevice& d) {
   if (d.set.find("{value}") == std::string::npos) {
     return (at / "set").wrong("a command with {value} where the number goes");
   }
-  if (d.unit != "A" && d.unit != "deg") return (at / "unit").wrong("\"A\" or \"deg\"");
+  if (!check_scale(at, d.scale)) return false;
   if (d.minimum >= d.maximum) {
     return (at / "minimum").wrong(fmt::format("less than the maximum {}", d.maximum));
   }
-  if (d.unit == "A" && (d.minimum > 0 || d.maximum < 0)) {
+  const StatedUnit* const unit = find_unit(d.unit);
+  const bool current = unit != nullptr && unit->dimension == Dimension::kCurrent;
+  if (current && (d.minimum > 0 || d.maximum < 0)) {
     return (at / (d.minimum > 0 ? "minimum" : "maximum"))
         .wrong("a range with 0 A in it, where the safe state is");
   }
@@ -216,9 +221,21 @@ bool is_invertible(const std::array<std::array<double, 3>, 3>& m) {
   return std::isfinite(determinant) && std::abs(determinant) > 1e-3;
 }
 
+/// The count of reports and the status enter as they come: there is nothing to scale.
+bool check_counts(const Place& fields, const std::vector<FieldSpec>& list) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const FieldSpec& f = list[i];
+    if ((f.name == "sequence" || f.name == "status") && (f.scale != 1.0 || f.offset != 0.0)) {
+      return (fields / i / (f.scale != 1.0 ? "scale" : "offset"))
+          .wrong(fmt::format("none: {} is a count", f.name));
+    }
+  }
+  return true;
+}
+
 bool check(const Place& at, const HidDevice& d) {
   const Place fields = at / "fields";
-  if (!check_unique(fields, d.fields)) return false;
+  if (!check_unique(fields, d.fields) || !check_counts(fields, d.fields)) return false;
   if (!check_has(fields, d.fields, {"field_x", "field_y", "field_z"})) return false;
   Layout layout(d.report_bytes, "report");
   if (!layout.claim(at / "report_id", 0, 1, "the report id")) return false;

@@ -1,6 +1,10 @@
 #pragma once
 // Instruments as data: register maps, SCPI dialogues, HID report layouts and serial frame layouts
 // (config/devices/*.json). One description drives both the driver and the simulated instrument.
+//
+// A file states its numbers in the instrument's units. Reading it takes scales, offsets and limits
+// to the house's (house_units.hpp), so that below `unit` is one of those: deg/h, degC, uT, A, W,
+// deg.
 
 #include <array>
 #include <cstdint>
@@ -33,7 +37,7 @@ struct RegisterSpec {
   double offset = 0.0;
   WordOrder word_order = WordOrder::kHighFirst;
   Access access = Access::kRead;
-  std::string unit;
+  std::string unit;  ///< empty for a count
   std::optional<double> minimum;
   std::optional<double> maximum;
 };
@@ -70,8 +74,8 @@ struct ScpiDevice {
   std::string output_on;                ///< "OUTP ON"; empty when it has none
   std::string output_off;               ///< "OUTP OFF"
   std::string error_query = "SYST:ERR?";
-  std::vector<int> busy_errors;  ///< numbers in the error queue that only ask for time
-  std::string unit;              ///< of the value, "A" or "deg"
+  std::string unit;    ///< of the value, "A" or "deg"
+  double scale = 1.0;  ///< value of one on the wire: 0.001 for a supply spoken to in mA
   double minimum = 0.0;
   double maximum = 0.0;
   double resolution = 0.0;           ///< smallest step of the output
@@ -86,7 +90,7 @@ struct FieldSpec {
   NumberType type = NumberType::kInt32;
   double scale = 1.0;
   double offset = 0.0;
-  std::string unit;
+  std::string unit;  ///< empty for a count
 };
 
 /// A three-axis magnetometer that sends input reports. Fields: field_x, field_y, field_z (uT),
@@ -122,15 +126,15 @@ struct CrcSpec {
   ByteOrder byte_order = ByteOrder::kBigEndian;
 };
 
-/// A gyro that streams fixed-length frames. `rate` is converted to deg/h by its scale.
+/// A gyro that streams fixed-length frames.
 struct FrameDevice {
   std::string name;
   std::vector<std::uint8_t> header;
   std::uint16_t frame_bytes = 0;
   ByteOrder byte_order = ByteOrder::kBigEndian;
-  FieldSpec rate;                        ///< scale takes the raw number to deg/h
-  std::optional<FieldSpec> temperature;  ///< degC
-  std::vector<FieldSpec> others;         ///< the rest of the payload, named for the documents
+  FieldSpec rate;
+  std::optional<FieldSpec> temperature;
+  std::vector<FieldSpec> others;  ///< the rest of the payload, named for the documents
   std::uint16_t status_offset_bytes = 0;
   std::uint8_t status_valid_mask = 0;  ///< all these bits set: the reading is valid
   std::uint16_t sequence_offset_bytes = 0;

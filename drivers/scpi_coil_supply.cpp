@@ -61,7 +61,7 @@ Status ScpiCoilSupply::enable() {
     if (Status on = dialogue_.command(config_.device.output_on); !on) return on;
     settle();
   }
-  return verify(0.0, &ScpiDialogue::query_number);
+  return verify(0.0, &ScpiDialogue::query_value);
 }
 
 Status ScpiCoilSupply::set_current(Ampere current) {
@@ -76,14 +76,14 @@ Status ScpiCoilSupply::set_current(Ampere current) {
   const double rounded = step > 0 ? std::round(current.value / step) * step : current.value;
   const double set_a = std::clamp(rounded, lowest, highest);
   if (Status done = program(set_a); !done) return done;
-  return verify(set_a, &ScpiDialogue::query_number);
+  return verify(set_a, &ScpiDialogue::query_value);
 }
 
 Result<CoilReading> ScpiCoilSupply::read() {
   clock_.sleep_until(valid_from_);
-  const auto measured = dialogue_.query_number(config_.device.measure_query);
+  const auto measured = dialogue_.query_value(config_.device.measure_query);
   if (!measured) return measured.error();
-  const auto set = dialogue_.query_number(config_.device.set_query);
+  const auto set = dialogue_.query_value(config_.device.set_query);
   if (!set) return set.error();
   return CoilReading{.taken_at = clock_.now(), .set = Ampere{*set}, .measured = Ampere{*measured}};
 }

@@ -30,7 +30,7 @@ constexpr double kInfinity = 9.9e37;
 
 /// Stands for the value in a description's `set`.
 constexpr std::string_view kPlace = "{value}";
-/// What a value is rounded to on its way.
+/// What a number is rounded to on its way.
 constexpr double kSentResolution = 1e-6;
 
 /// Lost or garbled on the way, as against refused: the outcome is unknown.
@@ -65,7 +65,8 @@ ScpiDialogue::ScpiDialogue(std::string name, const config::ScpiDevice& device,
       initialise_(device.initialise),
       set_(device.set),
       set_query_(device.set_query),
-      set_tolerance_(std::max(device.resolution, kSentResolution)),
+      scale_(device.scale),
+      set_tolerance_(std::max(device.resolution, kSentResolution * std::abs(device.scale))),
       error_query_(device.error_query),
       busy_errors_(device.busy_errors),
       transport_(std::move(transport)),
@@ -149,7 +150,7 @@ Result<double> ScpiDialogue::look(const std::string& question) {
     return failed(question, answer.error());
   }
   const auto value = parse_scpi_number(*answer);
-  if (value) return *value;
+  if (value) return *value * scale_;
   return no_number(question, *answer);
 }
 
@@ -193,13 +194,13 @@ Result<std::string> ScpiDialogue::query(const std::string& question) {
   return failed(question, failure);
 }
 
-Result<double> ScpiDialogue::query_number(const std::string& question) {
+Result<double> ScpiDialogue::query_value(const std::string& question) {
   std::string says;
   for (int attempt = 0; attempt < kQuestions; ++attempt) {
     const auto answer = query(question);
     if (!answer) return answer.error();
     const auto value = parse_scpi_number(*answer);
-    if (value) return *value;
+    if (value) return *value * scale_;
     says = *answer;
   }
   return no_number(question, says);
@@ -229,7 +230,7 @@ Status ScpiDialogue::command_once(const std::string& text) {
 std::string ScpiDialogue::set_text(double value) const {
   std::string text = set_;
   // Micro-units; never an exponent, which some firmware does not read.
-  return text.replace(text.find(kPlace), kPlace.size(), fmt::format("{:.6f}", value));
+  return text.replace(text.find(kPlace), kPlace.size(), fmt::format("{:.6f}", value / scale_));
 }
 
 Status ScpiDialogue::set(double value) {
@@ -237,7 +238,7 @@ Status ScpiDialogue::set(double value) {
   Status done = command(text);
   if (done || !is_lost(done.error()) || set_query_.empty()) return done;
   if (const Status cleared = transport_->clear(); !cleared) return done;
-  const auto present = query_number(set_query_);
+  const auto present = query_value(set_query_);
   if (!present) return done;
   return std::abs(*present - value) <= set_tolerance_ ? Status{} : command(text);
 }

@@ -58,14 +58,14 @@ class ScpiDialogue {
   /// Asks again once when no answer came, or one that is not to this question: a question changes
   /// nothing. What the failed one left in the error queue is taken out of it.
   Result<std::string> query(const std::string& question);
-  /// Asks again once when the answer is no finite number; kProtocol when it is none again.
-  Result<double> query_number(const std::string& question);
-  /// Sends it, then empties the error queue. kDevice with every entry that was in it; where all of
-  /// them say that the instrument is busy it is sent again for as long as a command's Patience has
-  /// it, then kBusy.
+  /// A question for the value, in the description's unit. Asks again once when the answer is no
+  /// finite number; kProtocol when it is none again.
+  Result<double> query_value(const std::string& question);
+  /// Sends it once, then empties the error queue. kDevice with every entry that was in it.
   Status command(const std::string& text);
-  /// The description's `set` with {value} replaced. When it was lost or its outcome unknown, what
-  /// the instrument says that it was set to decides whether it is sent again, once.
+  /// The description's `set` with {value} replaced, the value in the description's unit. When it
+  /// was lost or its outcome unknown, what the instrument says that it was set to decides whether
+  /// it is sent again, once.
   Status set(double value);
 
   Error error(ErrorCode code, const std::string& message) const;
@@ -98,6 +98,7 @@ class ScpiDialogue {
   std::string identity_;
   std::string set_;
   std::string set_query_;
+  double scale_;          ///< value of one on the wire
   double set_tolerance_;  ///< within it two values are one setting
   std::string error_query_;
   std::vector<int> busy_errors_;

@@ -38,7 +38,7 @@ Status ScpiTurntable::rotate_to(Degree azimuth) {
   const Clock::Instant give_up = clock_.now() + kPatience * move_time_;
   clock_.sleep_for(from_seconds(device_.settle.count()));
   for (;;) {
-    const auto reached = dialogue_.query_number(device_.measure_query);
+    const auto reached = dialogue_.query_value(device_.measure_query);
     if (!reached) return reached.error();
     if (config::angle_between(Degree{*reached}, azimuth).value <= device_.read_back_tolerance) {
       return {};
@@ -54,7 +54,7 @@ Status ScpiTurntable::rotate_to(Degree azimuth) {
 }
 
 Result<Degree> ScpiTurntable::azimuth() {
-  const auto azimuth = dialogue_.query_number(device_.measure_query);
+  const auto azimuth = dialogue_.query_value(device_.measure_query);
   if (!azimuth) return azimuth.error();
   return Degree{*azimuth};
 }

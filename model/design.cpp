@@ -60,6 +60,13 @@ Result<Design> Design::make(const Signals& signals, const config::ModelFile& mod
       continue;
     }
     const EffectInfo& info = effect->info();
+    const bool of_the_catalogue =
+        term.unit.empty() ||
+        std::find(info.units.begin(), info.units.end(), term.unit) != info.units.end();
+    if (!of_the_catalogue) {
+      return bad_term(term, fmt::format("has the unit \"{}\", expected the catalogue's \"{}\"",
+                                        term.unit, fmt::join(info.units, "\", \"")));
+    }
     for (std::size_t i = 0; i < info.columns.size(); ++i) {
       added = design.add_column(term, std::string(info.columns[i]), std::string(info.units[i]),
                                 hold_given);

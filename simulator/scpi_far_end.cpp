@@ -114,6 +114,7 @@ void ScpiFarEnd::set(std::string_view argument) {
   if (code != std::errc{} || end != argument.data() + argument.size()) {
     return fail(-120, "Numeric data error");
   }
+  value *= device_.scale;
   if (!(value >= device_.minimum && value <= device_.maximum)) {
     return fail(-222, "Data out of range");
   }
@@ -123,7 +124,7 @@ void ScpiFarEnd::set(std::string_view argument) {
 std::string ScpiFarEnd::number(double value, std::optional<std::string>& last) {
   constexpr const char* kNotANumber = "9.91E37";  // SCPI-99, 7.2.1.5
   if (line_.fault(FaultKind::kNan)) return kNotANumber;
-  if (!line_.fault(FaultKind::kStuck) || !last) last = fmt::format("{:.6E}", value);
+  if (!line_.fault(FaultKind::kStuck) || !last) last = fmt::format("{:.6E}", value / device_.scale);
   return *last;
 }
 

@@ -93,18 +93,19 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Scpi, DeviceMistakes,
-    testing::Values(Mistake{kCoil, R"([{"op": "replace", "path": "/set", "value": "CURR"}])",
-                            "/set: found \"CURR\", expected a command with {value}"},
-                    Mistake{kCoil, R"([{"op": "replace", "path": "/unit", "value": "V"}])",
-                            "/unit: found \"V\", expected \"A\" or \"deg\""},
-                    Mistake{kCoil, R"([{"op": "replace", "path": "/minimum", "value": 6}])",
-                            "/minimum: found 6, expected less than the maximum 6"},
-                    Mistake{kCoil, R"([{"op": "replace", "path": "/minimum", "value": 1}])",
-                            "/minimum: found 1, expected a range with 0 A in it"},
-                    Mistake{kCoil, R"([{"op": "remove", "path": "/output_off"}])",
-                            "/output_off: found nothing, expected output_on and output_off both"},
-                    Mistake{kCoil, R"([{"op": "add", "path": "/initialise/-", "value": "*tst?"}])",
-                            "/initialise/4: found \"*tst?\", expected no self test"}));
+    testing::Values(
+        Mistake{kCoil, R"([{"op": "replace", "path": "/set", "value": "CURR"}])",
+                "/set: found \"CURR\", expected a command with {value}"},
+        Mistake{kCoil, R"([{"op": "replace", "path": "/unit", "value": "V"}])",
+                "/unit: found \"V\", expected a current in A, mA, uA, or an angle in deg, "},
+        Mistake{kCoil, R"([{"op": "replace", "path": "/minimum", "value": 6}])",
+                "/minimum: found 6, expected less than the maximum 6"},
+        Mistake{kCoil, R"([{"op": "replace", "path": "/minimum", "value": 1}])",
+                "/minimum: found 1, expected a range with 0 A in it"},
+        Mistake{kCoil, R"([{"op": "remove", "path": "/output_off"}])",
+                "/output_off: found nothing, expected output_on and output_off both"},
+        Mistake{kCoil, R"([{"op": "add", "path": "/initialise/-", "value": "*tst?"}])",
+                "/initialise/4: found \"*tst?\", expected no self test"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Hid, DeviceMistakes,
@@ -140,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "/crc/count_bytes: found 33, expected a check that does not cover its own value"},
         Mistake{kKvh, R"([{"op": "replace", "path": "/rate/offset_bytes", "value": 2}])",
                 "/rate/offset_bytes: rate_x takes byte 2, which the header has already"},
-        Mistake{kKvh, R"([{"op": "replace", "path": "/rate/scale", "value": 0}])",
+        Mistake{kKvh, R"([{"op": "add", "path": "/rate/scale", "value": 0}])",
                 "/rate/scale: found 0"},
         Mistake{kKvh, R"([{"op": "replace", "path": "/frame_bytes", "value": 35}])",
                 "expected the check value at bytes 32...35 to lie inside the frame of 35 bytes"},

@@ -129,7 +129,7 @@ TEST_F(ScpiDialogueTest, ALateAnswerIsForgottenAndTheQuestionPutAgain) {
   ScpiDialogue dialogue = opened();
   far_.read_failures = {timeout_};
   const int clears = far_.clears;
-  EXPECT_EQ(*dialogue.query_number("MEAS:CURR?"), -1.112);
+  EXPECT_EQ(*dialogue.query_value("MEAS:CURR?"), -1.112);
   EXPECT_EQ(far_.clears, clears + 1);
   EXPECT_EQ(far_.sent, (std::vector<std::string>{"MEAS:CURR?", "SYST:ERR?", "MEAS:CURR?"}));
 }
@@ -137,14 +137,14 @@ TEST_F(ScpiDialogueTest, ALateAnswerIsForgottenAndTheQuestionPutAgain) {
 TEST_F(ScpiDialogueTest, AnAnswerToAnotherQuestionIsThrownAwayAndTheQuestionPutAgain) {
   ScpiDialogue dialogue = opened();
   far_.read_failures = {{ErrorCode::kProtocol, "the answer is to another request"}};
-  EXPECT_EQ(*dialogue.query_number("MEAS:CURR?"), -1.112);
+  EXPECT_EQ(*dialogue.query_value("MEAS:CURR?"), -1.112);
 }
 
 TEST_F(ScpiDialogueTest, WhatAFailedQuestionLeavesInTheErrorQueueIsNotBlamedOnTheNextCommand) {
   ScpiDialogue dialogue = opened();
   far_.read_failures = {timeout_};
   far_.errors = {"-200,\"Execution error\""};
-  EXPECT_TRUE(dialogue.query_number("MEAS:CURR?"));
+  EXPECT_TRUE(dialogue.query_value("MEAS:CURR?"));
   const Status status = dialogue.command("OUTP ON");
   EXPECT_TRUE(status) << status.error().message;
 }
@@ -153,11 +153,11 @@ TEST_F(ScpiDialogueTest, AQuestionThatFailsTwiceSaysWhatTheErrorQueueHadAboutIt)
   ScpiDialogue dialogue = opened();
   far_.answers.erase("MEAS:CURR?");
   far_.errors = {"-200,\"Execution error\"", "-420,\"Query UNTERMINATED\""};
-  EXPECT_EQ(dialogue.query_number("MEAS:CURR?").error().message,
+  EXPECT_EQ(dialogue.query_value("MEAS:CURR?").error().message,
             "coil: MEAS:CURR?: no answer (-200,\"Execution error\"; -420,\"Query "
             "UNTERMINATED\")");
   far_.answers["MEAS:CURR?"] = "0";
-  EXPECT_TRUE(dialogue.query_number("MEAS:CURR?"));
+  EXPECT_TRUE(dialogue.query_value("MEAS:CURR?"));
   EXPECT_TRUE(dialogue.command("OUTP ON"));
 }
 
@@ -168,14 +168,14 @@ TEST_F(ScpiDialogueTest, OneAnswerThatIsNoNumberIsForgiven) {
   far_.before_write = [&](const std::string& text) {
     if (text == "MEAS:CURR?" && ++asked == 2) far_.answers["MEAS:CURR?"] = "1.5";
   };
-  EXPECT_EQ(*dialogue.query_number("MEAS:CURR?"), 1.5);
+  EXPECT_EQ(*dialogue.query_value("MEAS:CURR?"), 1.5);
 }
 
 TEST_F(ScpiDialogueTest, TwoLostAnswersAreATimeout) {
   ScpiDialogue dialogue = opened();
   // To the question, to the look into the error queue, and both once more.
   far_.read_failures = {timeout_, timeout_, timeout_, timeout_};
-  const auto value = dialogue.query_number("MEAS:CURR?");
+  const auto value = dialogue.query_value("MEAS:CURR?");
   ASSERT_FALSE(value);
   EXPECT_EQ(value.error().code, ErrorCode::kTimeout);
   EXPECT_EQ(value.error().message, "coil: MEAS:CURR?: no answer in 1 s");
@@ -288,11 +288,11 @@ TEST_F(ScpiDialogueTest, NumbersAreReadAsInstrumentsWriteThem) {
       {"+1.5", 1.5}, {" -2.5E-03\r\n", -2.5e-3}, {"0", 0.0}, {".25", 0.25}};
   for (const auto& [text, value] : good) {
     far_.answers["MEAS:CURR?"] = text;
-    EXPECT_EQ(*dialogue.query_number("MEAS:CURR?"), value) << text;
+    EXPECT_EQ(*dialogue.query_value("MEAS:CURR?"), value) << text;
   }
   for (const char* text : {"", "A 1.5", "1.5 A", "nan", "inf", "9.91E37", "-9.9E37"}) {
     far_.answers["MEAS:CURR?"] = text;
-    const auto value = dialogue.query_number("MEAS:CURR?");
+    const auto value = dialogue.query_value("MEAS:CURR?");
     ASSERT_FALSE(value) << text;
     EXPECT_EQ(value.error().code, ErrorCode::kProtocol) << text;
   }

@@ -26,6 +26,22 @@ Table varied_session() {
   return table;
 }
 
+TEST(Design, RefusesAnotherUnitThanTheCataloguesForItsEffects) {
+  const Table table = varied_session();
+  const Signals signals(table, 21.0);
+  config::ModelFile model;
+  config::ModelTerm& term = model.terms.emplace_back();
+  term.effect = "magnetic_linear_z";
+  term.unit = "deg/h per 100 uT";
+  EXPECT_TRUE(Design::make(signals, model, false));
+  term.unit = "deg/s";
+  const auto refused = Design::make(signals, model, false);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "term magnetic_linear_z: has the unit \"deg/s\", expected the catalogue's \"deg/h per "
+            "100 uT\"");
+}
+
 TEST(Design, DerivativesByInnerParametersAgreeWithFiniteDifferences) {
   const Table table = varied_session();
   const Signals signals(table, 21.0);
