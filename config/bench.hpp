@@ -130,6 +130,8 @@ struct SimulationConfig {
   Degree turntable_repeatability{0.003};
   /// Earth's rate along the sensitive axis, and horizontally (for earth_rate_projection).
   DegPerHour earth_rate_on_axis{12.433};
+  /// Frames a second that the gyro really sends; without it as many as its description states.
+  std::optional<double> gyro_frame_rate_hz;
   Seconds step{0.1};  ///< of the plant's integration
 };
 

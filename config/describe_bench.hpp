@@ -190,6 +190,9 @@ void describe(Visitor& v, SimulationConfig& s) {
              "Standard deviation of a position.", at_least(0));
   v.optional("earth_rate_on_axis_deg_per_h", s.earth_rate_on_axis,
              "Earth's rate along the sensitive axis.");
+  v.optional("gyro_frame_rate_hz", s.gyro_frame_rate_hz,
+             "Frames a second that the gyro really sends; without it what its description states.",
+             between(0.1, 100000));
   v.optional("step_s", s.step, "Of the integration.", between(0.001, 1));
 }
 

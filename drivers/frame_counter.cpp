@@ -39,6 +39,7 @@ void FrameCounter::settle(std::optional<Clock::Instant> empty_at, std::int64_t p
       block.index[i] += turns * modulus_;
     }
     last_index_ += turns * modulus_;
+    put_in_ += turns * modulus_;
   }
   std::size_t repeated = 0;
   const bool goes_back = entries > 0 && block.index[first] <= settled_index_;

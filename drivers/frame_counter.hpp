@@ -73,6 +73,9 @@ class FrameCounter {
 
   /// Of the newest frame; -1 before the first.
   std::int64_t last_index() const { return last_index_; }
+  /// The same by the sequence numbers alone, without the turns that the clock has put in: what the
+  /// clock may be held against.
+  std::int64_t counted() const { return last_index_ - put_in_; }
 
  private:
   /// Whole turns to put in now; follows the phase.
@@ -90,6 +93,7 @@ class FrameCounter {
   std::int64_t last_sequence_ = -1;
   std::int64_t last_index_ = -1;
   std::int64_t settled_index_ = -1;  ///< the highest at the last settle()
+  std::int64_t put_in_ = 0;          ///< frames in the turns that the clock has put in
 
   // Since the last settle().
   bool has_new_ = false;  ///< frames that were no repeats

@@ -55,6 +55,8 @@ class FrameParser {
   bool stands_still() const { return rate_repeats_ > most_repeats_; }
   /// Of the newest frame; -1 before the first.
   std::int64_t last_index() const { return counter_.last_index(); }
+  /// Likewise, by the sequence numbers alone.
+  std::int64_t counted() const { return counter_.counted(); }
 
  private:
   struct Field {

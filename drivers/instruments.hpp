@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -146,6 +147,12 @@ struct StreamStatistics {
   std::uint64_t bytes_skipped = 0;   ///< thrown away while looking for a header
 };
 
+/// Frames a second as they come, lost ones counted, by the clock.
+struct FrameRate {
+  double measured_hz = 0.0;
+  bool as_stated = true;  ///< by the instrument's description
+};
+
 class Gyro : public Instrument {
  public:
   /// Appends every good frame that has arrived by now to `out` (nothing new: appends nothing).
@@ -154,7 +161,10 @@ class Gyro : public Instrument {
   virtual const StreamStatistics& statistics() const = 0;
   /// When frame `index` was measured (middle of its sample), from the counter, not from arrival.
   virtual Clock::Instant time_of(std::int64_t index) const = 0;
+  /// As the description states it.
   virtual double frame_rate_hz() const = 0;
+  /// Of the last few seconds in which frames were read; nothing before there were so many.
+  virtual std::optional<FrameRate> measured_frame_rate() const = 0;
 };
 
 /// The instruments of one bench.

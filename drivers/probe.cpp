@@ -11,6 +11,7 @@
 #include "config/json_file.hpp"
 #include "drivers/crc.hpp"
 #include "drivers/frame_parser.hpp"
+#include "drivers/frame_rate_meter.hpp"
 #include "drivers/number_codec.hpp"
 #include "drivers/patience.hpp"
 #include "drivers/scpi_dialogue.hpp"
@@ -22,6 +23,8 @@ using namespace std::chrono_literals;
 using config::one_line;
 
 constexpr Clock::Duration kProbePatience = 1s;
+/// Half more than the rate takes of a gyro that sends twenty frames a second or more.
+constexpr Clock::Duration kRatePatience = 12s;
 
 std::string hex(std::span<const std::uint8_t> bytes) {
   return fmt::format("{:02X}", fmt::join(bytes, " "));
@@ -60,9 +63,8 @@ bool is_question(const std::string& text) {
          upper.find("TST") == std::string::npos;
 }
 
-ProbeRow ask(const std::string& name, const std::string& question, const std::string& unit,
-             MessageTransport& transport) {
-  ProbeRow row{name, question, {}, {}, unit, {}};
+ProbeRow ask(const std::string& name, const std::string& question, MessageTransport& transport) {
+  ProbeRow row{name, question, {}, {}, {}, {}};
   if (!is_question(question)) {
     row.problem = "is not a single question; not sent";
     return row;
@@ -75,10 +77,18 @@ ProbeRow ask(const std::string& name, const std::string& question, const std::st
     return row;
   }
   row.raw = one_line(*answer);
-  if (unit.empty()) return row;
-  const auto number = parse_scpi_number(*answer);
+  return row;
+}
+
+/// A question for the value that the instrument sets.
+ProbeRow ask_value(const std::string& name, const std::string& question,
+                   const config::ScpiDevice& device, MessageTransport& transport) {
+  ProbeRow row = ask(name, question, transport);
+  row.unit = device.unit;
+  if (!row.problem.empty()) return row;
+  const auto number = parse_scpi_number(row.raw);
   if (number) {
-    row.value = *number;
+    row.value = *number * device.scale;
   } else {
     row.problem = "is no number";
   }
@@ -114,14 +124,14 @@ ProbeReport probe(const config::ModbusDevice& device, ModbusTransport& transport
 
 ProbeReport probe(const config::ScpiDevice& device, MessageTransport& transport) {
   ProbeReport report;
-  report.rows.push_back(ask("identity", "*IDN?", "", transport));
+  report.rows.push_back(ask("identity", "*IDN?", transport));
   ProbeRow& identity = report.rows.back();
   if (identity.problem.empty() && identity.raw.find(device.identity) == std::string::npos) {
     identity.problem = fmt::format("expected {} in it", device.identity);
   }
-  report.rows.push_back(ask("set", device.set_query, device.unit, transport));
-  report.rows.push_back(ask("measured", device.measure_query, device.unit, transport));
-  report.rows.push_back(ask("oldest error", device.error_query, "", transport));
+  report.rows.push_back(ask_value("set", device.set_query, device, transport));
+  report.rows.push_back(ask_value("measured", device.measure_query, device, transport));
+  report.rows.push_back(ask("oldest error", device.error_query, transport));
   return report;
 }
 
@@ -160,8 +170,14 @@ ProbeReport probe(const config::FrameDevice& device, SerialTransport& transport,
   std::vector<std::uint8_t> recent;
   GyroBlock block;
   std::string failure;
+  FrameRateMeter meter(device.frame_rate_hz);
   const Clock::Instant begun = clock.now();
-  while (clock.now() - begun < kProbePatience && failure.empty()) {
+  const auto goes_on = [&] {
+    const Clock::Duration lasted = clock.now() - begun;
+    return lasted < kProbePatience ||
+           (parser.counted() >= 0 && !meter.rate() && lasted < kRatePatience);
+  };
+  while (failure.empty() && goes_on()) {
     const std::span<std::byte> space = parser.space();
     const auto count = transport.read_some(space);
     if (!count) {
@@ -171,7 +187,9 @@ ProbeReport probe(const config::FrameDevice& device, SerialTransport& transport,
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(space.data());
     recent.insert(recent.end(), bytes, bytes + *count);
     parser.parse(*count, block);
-    if (*count == 0) clock.sleep_for(10ms);
+    if (*count != 0) continue;
+    if (parser.counted() >= 0) meter.look(clock.now(), parser.counted());
+    clock.sleep_for(5ms);
   }
   parser.settle(std::nullopt, block);
   for (std::size_t at = 0; at + device.frame_bytes <= recent.size();) {
@@ -200,6 +218,18 @@ ProbeReport probe(const config::FrameDevice& device, SerialTransport& transport,
     return report;
   }
   report.rows.push_back({"frame", fmt::format("{} bytes", newest.size()), hex(newest), {}, {}, {}});
+  if (const auto rate = meter.rate()) {
+    report.rows.push_back(
+        {"frame rate",
+         "by this machine's clock",
+         {},
+         rate->measured_hz,
+         "Hz",
+         rate->as_stated ? ""
+                         : fmt::format("expected {} as the description states, "
+                                       "within {} %",
+                                       device.frame_rate_hz, 100.0 * FrameRateMeter::kTolerance)});
+  }
   report.rows.push_back(row_of(device.rate, device.byte_order, newest));
   if (device.temperature) {
     report.rows.push_back(row_of(*device.temperature, device.byte_order, newest));

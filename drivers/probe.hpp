@@ -37,7 +37,8 @@ ProbeReport probe(const config::ModbusDevice& device, ModbusTransport& transport
 ProbeReport probe(const config::ScpiDevice& device, MessageTransport& transport);
 /// The next input report.
 ProbeReport probe(const config::HidDevice& device, HidTransport& transport);
-/// A second of the stream: the newest good frame, and what the line carries.
+/// A second of the stream, and where frames come as many more as their rate takes to be measured:
+/// the newest good frame, what the line carries, and the frames a second by the clock.
 ProbeReport probe(const config::FrameDevice& device, SerialTransport& transport, Clock& clock);
 
 }  // namespace fogbench::drivers

@@ -39,6 +39,7 @@ SerialGyro::SerialGyro(std::string name, const config::GyroConfig& config,
       transport_(std::move(transport)),
       clock_(clock),
       parser_(config.device),
+      meter_(frame_rate_hz_),
       last_read_(clock.now()) {}
 
 Result<std::unique_ptr<SerialGyro>> SerialGyro::attach(std::string name,
@@ -95,6 +96,7 @@ Status SerialGyro::read(GyroBlock& out) {
     clock_.sleep_for(kLookAgain);
     empty = take(out);
   }
+  if (empty && *empty) meter_.look(now, parser_.counted());
   const Status failure = empty ? Status{} : empty.error();
   parser_.settle(empty && *empty ? std::optional(now) : std::nullopt, out);
   if (!failure) return failure;

@@ -6,6 +6,7 @@
 
 #include "config/bench.hpp"
 #include "drivers/frame_parser.hpp"
+#include "drivers/frame_rate_meter.hpp"
 #include "drivers/instruments.hpp"
 #include "drivers/transport.hpp"
 
@@ -32,6 +33,7 @@ class SerialGyro final : public Gyro {
   const StreamStatistics& statistics() const override { return parser_.statistics(); }
   Clock::Instant time_of(std::int64_t index) const override;
   double frame_rate_hz() const override { return frame_rate_hz_; }
+  std::optional<FrameRate> measured_frame_rate() const override { return meter_.rate(); }
 
  private:
   SerialGyro(std::string name, const config::GyroConfig& config,
@@ -47,6 +49,7 @@ class SerialGyro final : public Gyro {
   std::unique_ptr<SerialTransport> transport_;
   Clock& clock_;
   FrameParser parser_;
+  FrameRateMeter meter_;
   Clock::Instant first_sample_{};  ///< middle of the sample with index 0
   Clock::Instant last_read_;
   Clock::Instant last_good_{};  ///< when a good frame was last received

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/frame_rate_meter.hpp"
 #include "drivers/named_error.hpp"
 
 namespace fogbench::procedures {
@@ -34,6 +35,7 @@ Status BenchWatch::start() {
   next_reading_ = begun;
   const auto patience =
       drivers::from_seconds(std::max(kLongestOutage.count(), 3.0 / bench_.gyro->frame_rate_hz()));
+  frames_.clear();
   for (;;) {
     const auto drained = drain();
     if (!drained) return drained;
@@ -45,13 +47,16 @@ Status BenchWatch::start() {
     clock_.sleep_for(std::chrono::milliseconds{10});
   }
   power_on_ = bench_.gyro->time_of(0);
-  return {};
+  return record_frames();
 }
 
 Status BenchWatch::tick(Instant deadline) {
-  sleep_until(std::min(deadline, next_reading_));
+  frames_.clear();
   has_new_row_ = false;
-  const auto drained = drain();
+  auto drained = sleep_until(std::min(deadline, next_reading_));
+  if (drained) drained = drain();
+  if (const auto recorded = record_frames(); !recorded) return recorded;
+  if (drained) drained = check_frame_rate();
   if (!drained) return drained;
   const Instant now = clock_.now();
   if (now < next_reading_ || interrupted_()) return {};
@@ -60,24 +65,52 @@ Status BenchWatch::tick(Instant deadline) {
   return read_slow_instruments();
 }
 
-void BenchWatch::sleep_until(Instant deadline) {
+Status BenchWatch::sleep_until(Instant deadline) {
   while (clock_.now() < deadline && !interrupted_()) {
     clock_.sleep_until(std::min(deadline, clock_.now() + kNap));
+    if (bench_.gyro->measured_frame_rate()) continue;
+    if (const auto drained = drain(); !drained) return drained;
   }
+  return {};
 }
 
 Status BenchWatch::drain() {
-  frames_.clear();
-  Status outcome = bench_.gyro->read(frames_);
-  if (!frames_.index.empty()) {
+  const std::size_t before = frames_.index.size();
+  const Status outcome = bench_.gyro->read(frames_);
+  if (frames_.index.size() > before) {
     next_frame_ = frames_.index.back() + 1;
     gyro_.last_taken = clock_.now();
-    if (!kept_from_record_) {
-      const auto recorded = recorder_.gyro_samples(frames_);
-      if (!recorded) return recorded;
-    }
   }
   return note(gyro_, outcome);
+}
+
+Status BenchWatch::record_frames() {
+  if (kept_from_record_ || frames_.index.empty()) return {};
+  return recorder_.gyro_samples(frames_);
+}
+
+Status BenchWatch::check_frame_rate() {
+  const auto rate = bench_.gyro->measured_frame_rate();
+  if (!rate || rate_as_stated_ == rate->as_stated) return {};
+  const bool first = !rate_as_stated_;
+  rate_as_stated_ = rate->as_stated;
+  if (first && rate->as_stated) return {};
+  const double stated_hz = bench_.gyro->frame_rate_hz();
+  const double off_percent = 100.0 * (rate->measured_hz / stated_hz - 1.0);
+  const auto sends =
+      fmt::format("gyro: sends {:.1f} frames a second by this machine's clock", rate->measured_hz);
+  if (rate->as_stated)
+    return event("info", fmt::format("{}, {} as stated again", sends, stated_hz));
+  const auto message = fmt::format(
+      "{}, expected {} as its description states, within {} %: times in the record would be {:.1f} "
+      "% "
+      "{}",
+      sends, stated_hz, 100.0 * drivers::FrameRateMeter::kTolerance, std::abs(off_percent),
+      off_percent > 0.0 ? "too long" : "too short");
+  if (first) return Error{ErrorCode::kDevice, message};
+  return event(
+      "warning", message,
+      fmt::format(R"({{"measured_hz":{:.3f},"stated_hz":{}}})", rate->measured_hz, stated_hz));
 }
 
 Status BenchWatch::read_slow_instruments() {

@@ -7,6 +7,10 @@
 // that is unplugged after the bench's absence_maximum. While the coils carry current nobody may
 // leave unnoticed: an instrument that is unplugged then interrupts the step at once. A reading that
 // repeats an old time stamp is stale and counts as failed: it never enters an average.
+//
+// The record's times are the gyro's counter over its stated frame rate. Until that rate is
+// measured, a few seconds, frames are taken as they come. One that is not as stated ends the run; a
+// rate that was right and changes later is warned of, since what was measured before stands.
 
 #include <array>
 #include <deque>
@@ -91,8 +95,12 @@ class BenchWatch {
     std::optional<Instant> since;
     Instant last_taken{Instant::min()};
   };
-  void sleep_until(Instant deadline);
+  /// Takes what comes meanwhile, while the frame rate is still to be measured.
+  Status sleep_until(Instant deadline);
+  /// Appends what the stream has brought.
   Status drain();
+  Status record_frames();
+  Status check_frame_rate();
   Status read_slow_instruments();
   /// Keeps count of the outage; an error when it has lasted too long or cannot be recorded.
   Status note(Outage& outage, const Status& outcome);
@@ -109,6 +117,8 @@ class BenchWatch {
   std::deque<MonitorRow> recent_;
   bool has_new_row_ = false;
   std::int64_t next_frame_ = 0;
+  /// Whether the frame rate was as stated when it was last measured; nothing before the first time.
+  std::optional<bool> rate_as_stated_;
   Instant power_on_{};
   Instant next_reading_{};
   drivers::Clock::Duration calendar_noted_{};  ///< the clock's offset that is on record

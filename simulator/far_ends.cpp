@@ -106,8 +106,10 @@ Result<FarEnds> make_far_ends(const config::BenchConfig& config,
   Result<FaultSchedule> faults =
       FaultSchedule::create(scenario.faults, "gyro", GyroFarEnd::kFaults);
   if (!faults) return faults.error();
-  ends.gyro = std::make_unique<GyroFarEnd>(config.gyro.device, scenario.noise, plant,
-                                           *std::move(faults), derive_seed(seed, "gyro"));
+  config::FrameDevice gyro = config.gyro.device;
+  gyro.frame_rate_hz = config.simulation.gyro_frame_rate_hz.value_or(gyro.frame_rate_hz);
+  ends.gyro = std::make_unique<GyroFarEnd>(gyro, scenario.noise, plant, *std::move(faults),
+                                           derive_seed(seed, "gyro"));
   return ends;
 }
 

@@ -39,6 +39,9 @@ class SteadyGyro final : public drivers::Gyro {
     return drivers::Clock::Instant{std::chrono::microseconds{index * 1000 + 500}};
   }
   double frame_rate_hz() const override { return 1000.0; }
+  std::optional<drivers::FrameRate> measured_frame_rate() const override {
+    return drivers::FrameRate{1000.0};
+  }
 
  private:
   const drivers::Clock& clock_;

@@ -37,6 +37,9 @@ class CheapGyro final : public drivers::Gyro {
     return drivers::Clock::Instant{std::chrono::microseconds{index * 1000 + 500}};
   }
   double frame_rate_hz() const override { return kFrameRateHz; }
+  std::optional<drivers::FrameRate> measured_frame_rate() const override {
+    return drivers::FrameRate{kFrameRateHz};
+  }
 
  private:
   const drivers::Clock& clock_;

@@ -111,7 +111,23 @@ TEST_F(Probe, ShowsTheNewestFrameAndWhatTheLineCarries) {
   EXPECT_NEAR(*row(report, "rate_x").value, 12.4, 5.0);
   EXPECT_NEAR(*row(report, "acceleration_x").value, 1.0, 1e-6);
   ASSERT_EQ(report.notes.size(), 1U);
-  EXPECT_THAT(report.notes[0], HasSubstr("expected about 100; 0 missing"));
+  EXPECT_THAT(report.notes[0], HasSubstr("; 0 missing"));
+}
+
+TEST_F(Probe, HoldsTheFrameRateAgainstTheClock) {
+  const Transports ends = connect();
+  const ProbeRow right = row(probe(config_.gyro.device, *ends.gyro, clock_), "frame rate");
+  EXPECT_EQ(right.problem, "");
+  EXPECT_NEAR(*right.value, 100.0, 0.1);
+  for (const double rate_hz : {90.0, 101.0}) {
+    config_.simulation.gyro_frame_rate_hz = rate_hz;
+    const Transports others = connect();
+    const Clock::Instant begun = clock_.now();
+    const ProbeRow wrong = row(probe(config_.gyro.device, *others.gyro, clock_), "frame rate");
+    EXPECT_LT(to_seconds(clock_.now() - begun), 10.0);
+    EXPECT_NEAR(*wrong.value, rate_hz, 0.1);
+    EXPECT_EQ(wrong.problem, "expected 100 as the description states, within 0.3 %");
+  }
 }
 
 TEST_F(Probe, SaysWhenNoFrameFitsTheDescription) {

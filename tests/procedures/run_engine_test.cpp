@@ -251,6 +251,35 @@ TEST(RunEngine, AbortsWhileAnAnswerIsAwaited) {
   EXPECT_THAT(summary->end.reason, HasSubstr("aborted on request"));
 }
 
+TEST(RunEngine, AGyroOfAnotherFrameRateIsRefusedBeforeItsTimesAreRecorded) {
+  Rig rig;
+  rig.plant.frame_rate_error = 0.9;
+  const RunSummary summary = rig.summary_of({average(), average()});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kFailed);
+  EXPECT_EQ(summary.end.reason,
+            "gyro: sends 90.0 frames a second by this machine's clock, expected 100 as its "
+            "description states, within 0.3 %: times in the record would be 10.0 % too short");
+  EXPECT_TRUE(rig.log.points.empty());
+}
+
+TEST(RunEngine, AFrameRateThatChangesLaterIsWarnedOfOnce) {
+  Rig rig;
+  rig.engine.on_progress([&](const Progress& p) {
+    const bool off = p.elapsed > Seconds{20.0} && p.elapsed < Seconds{40.0};
+    rig.plant.frame_rate_error = off ? 1.01 : 1.0;
+  });
+  const RunSummary summary = rig.summary_of({wait(60.0)});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted) << summary.end.reason;
+  ASSERT_EQ(rig.log.events.size(), 2U);
+  EXPECT_EQ(rig.log.events[0].severity, "warning");
+  EXPECT_THAT(rig.log.events[0].message, HasSubstr("sends 101.0 frames a second"));
+  EXPECT_THAT(rig.log.events[0].message, HasSubstr("times in the record would be 1.0 % too long"));
+  EXPECT_EQ(rig.log.events[0].data_json, R"({"measured_hz":101.000,"stated_hz":100})");
+  EXPECT_EQ(rig.log.events[1].severity, "info");
+  EXPECT_EQ(rig.log.events[1].message,
+            "gyro: sends 100.0 frames a second by this machine's clock, 100 as stated again");
+}
+
 TEST(RunEngine, RecordsAPointBeforeAnyObserverSeesIt) {
   Rig rig;
   std::size_t seen = 0;

@@ -41,6 +41,7 @@ struct FakePlant {
   bool operator_agrees = true;
   // Gyro.
   double frame_rate_hz = 100.0;
+  double frame_rate_error = 1.0;  ///< frames that are measured for one that is stated
   std::function<double(std::int64_t)> rate = [](std::int64_t) { return 0.0; };
   std::function<bool(std::int64_t)> lost = [](std::int64_t) { return false; };
 
@@ -239,6 +240,10 @@ class FakeGyro final : public drivers::Gyro {
         drivers::from_seconds((static_cast<double>(index) + 0.5) / plant_.frame_rate_hz)};
   }
   double frame_rate_hz() const override { return plant_.frame_rate_hz; }
+  std::optional<drivers::FrameRate> measured_frame_rate() const override {
+    return drivers::FrameRate{plant_.frame_rate_hz * plant_.frame_rate_error,
+                              plant_.frame_rate_error == 1.0};
+  }
 
  private:
   FakePlant& plant_;
