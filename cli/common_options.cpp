@@ -10,8 +10,10 @@
 namespace fogbench::cli {
 namespace {
 
-/// kUsage-worthy when empty: not a finite number.
+/// kUsage-worthy when empty: not a finite number. Blanks around it are allowed.
 std::optional<double> parse_number(std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return {};
@@ -55,8 +57,25 @@ void add_procedure_options(CLI::App& command, ProcedureOptions& options) {
   command.add_option("--bench", options.bench, "A bench file, or a ready one (default: simulated)");
   command
       .add_option("--set", options.set,
-                  "name=value or name=value,value...: a parameter of the procedure")
+                  "name=value or name=value,value...: a parameter of the procedure; blanks "
+                  "after commas are allowed")
       ->allow_extra_args(false);
+}
+
+std::vector<std::string> arguments_with_lists(int argc, char** argv) {
+  std::vector<std::string> joined;
+  bool value = false;  // of --set
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view text = argv[i];
+    const bool unfinished = value && (joined.back().ends_with(',') || joined.back().ends_with('='));
+    if (unfinished || (value && text.starts_with(','))) {
+      joined.back() += text;
+      continue;
+    }
+    value = text.starts_with("--set=") || (i > 1 && std::string_view(argv[i - 1]) == "--set");
+    joined.emplace_back(text);
+  }
+  return joined;
 }
 
 Result<daemon::Parameters> parse_parameters(const std::vector<std::string>& set) {

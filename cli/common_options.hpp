@@ -32,7 +32,11 @@ struct ProcedureOptions {
 };
 void add_procedure_options(CLI::App& command, ProcedureOptions& options);
 
-/// "name=1.5" or "name=31,35,40". kUsage for anything else.
+/// The program's arguments; a list that blanks after --set have taken apart, as in
+/// --set levels=0, 50, 100, is one again.
+std::vector<std::string> arguments_with_lists(int argc, char** argv);
+
+/// "name=1.5" or "name=31,35,40", blanks around numbers allowed. kUsage for anything else.
 Result<daemon::Parameters> parse_parameters(const std::vector<std::string>& set);
 
 }  // namespace fogbench::cli

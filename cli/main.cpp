@@ -5,11 +5,13 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <system_error>
 
 #include "cli/command.hpp"
+#include "cli/common_options.hpp"
 #include "cli/output.hpp"
 #include "daemon/manual.hpp"
 
@@ -91,7 +93,9 @@ int run(int argc, char** argv) {
   }
 
   try {
-    app.parse(argc, argv);
+    auto arguments = fogbench::cli::arguments_with_lists(argc, argv);
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+    app.parse(std::move(arguments));
   } catch (const CLI::Success& help) {  // --help, --version
     return app.exit(help);
   } catch (const CLI::ParseError& error) {

@@ -50,7 +50,9 @@ Result<PlannedProcedure> recorded_procedure(const StoredRun& run,
     }
   }
   const std::string first = record["files"].items().begin().key();
-  return plan_procedure((folder->path() / first).string(), bench, *parameters);
+  auto planned = plan_procedure((folder->path() / first).string(), bench, *parameters);
+  if (planned) planned->plan.procedure = run.header.procedure;
+  return planned;
 }
 
 std::optional<std::size_t> index_of(const Plan& plan, std::string_view path) {

@@ -47,6 +47,26 @@ Result<std::vector<fs::path>> files_of_bench(const fs::path& file) {
   return files;
 }
 
+/// The procedure's name for the record. Of an edited copy of a ready one, which bears its name too,
+/// it says which file it was.
+std::string name_of(const procedures::Plan& plan) {
+  const auto folder = config::config_directory();
+  if (!folder) return plan.procedure;
+  const fs::path ready = *folder / "procedures";
+  std::error_code ignored;
+  if (!fs::is_regular_file(ready / (plan.procedure + ".json"), ignored)) return plan.procedure;
+  for (const fs::path& file : plan.files) {
+    const bool first = &file == &plan.files.front();
+    const auto text = config::read_text_file(file);
+    const auto readys = config::read_text_file(
+        ready / (first ? fs::path(plan.procedure + ".json") : file.filename()));
+    if (text && readys && *text == *readys) continue;
+    return fmt::format("{} ({}, not the ready one)", plan.procedure,
+                       config::one_line(file.filename().string()));
+  }
+  return plan.procedure;
+}
+
 /// The name of a file may be any bytes; JSON text may not.
 std::string text_of(const nlohmann::ordered_json& record) {
   return record.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -104,6 +124,7 @@ Result<PlannedProcedure> plan_procedure(const std::string& name, const config::B
   if (!procedure) return procedure.error();
   auto plan = procedures::make_plan(*procedure, bench, parameters);
   if (!plan) return plan.error();
+  plan->procedure = name_of(*plan);
   const auto texts = texts_of(plan->files);
   if (!texts) return texts.error();
   const nlohmann::ordered_json record{{"files", *texts}, {"parameters", to_json(parameters)}};

@@ -1,5 +1,6 @@
 #include "daemon/session.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -27,6 +28,54 @@ TEST(PlanProcedure, RecordsAFileWhoseNameIsNotText) {
   const auto record = nlohmann::json::parse(planned->procedure_json, nullptr, false);
   ASSERT_TRUE(record.is_object());
   EXPECT_EQ(record["files"].begin().value(), text);
+}
+
+TEST(PlanProcedure, TellsAnEditedCopyFromTheReadyOneOfItsName) {
+  const auto ready = tests::source_tree() / "config";
+  const auto bench = config::load_bench(ready / "benches/simulated.json");
+  ASSERT_TRUE(bench) << bench.error().message;
+  const support::TemporaryFolder folder;
+  const std::string text = support::read_text(ready / "procedures/coil-sweep.json");
+  std::string edited = text;
+  edited.replace(edited.find("180"), 3, "200");
+  const auto name = [&](const std::filesystem::path& file) {
+    const auto planned = plan_procedure(file.string(), *bench, {});
+    return planned ? planned->plan.procedure : planned.error().message;
+  };
+  EXPECT_EQ(name(ready / "procedures/coil-sweep.json"), "coil-sweep");
+  EXPECT_EQ(name(folder.file("same.json", text)), "coil-sweep");
+  EXPECT_EQ(name(folder.file("coil-sweep.json", edited)),
+            "coil-sweep (coil-sweep.json, not the ready one)");
+  EXPECT_EQ(name(folder.file("m\xe9.json", edited)), "coil-sweep (m?.json, not the ready one)");
+  edited.replace(edited.find("\"coil-sweep\""), 12, "\"my-sweep\"");
+  EXPECT_EQ(name(folder.file("mine.json", edited)), "my-sweep") << "nobody takes it for another";
+}
+
+TEST(Session, AGyroOfAnotherFrameRateThanItsFileStatesEndsTheRunWithinSeconds) {
+  const auto ready = tests::source_tree() / "config";
+  for (const double rate_hz : {90.0, 101.0}) {
+    auto setup = load_setup(
+        {(ready / "benches/simulated.json").string(), (ready / "scenarios/clean.json").string()});
+    ASSERT_TRUE(setup) << setup.error().message;
+    setup->bench.simulation.gyro_frame_rate_hz = rate_hz;
+    const auto planned = plan_procedure((ready / "procedures/static-record.json").string(),
+                                        setup->bench, {{"duration_s", 600.0}});
+    ASSERT_TRUE(planned) << planned.error().message;
+    test::MemoryRecorder record;
+    SimulatedOperator person;
+    const auto session = Session::open(std::move(*setup), 3, record, Speed::kMaximum, person);
+    ASSERT_TRUE(session) << session.error().message;
+    const auto begun = (*session)->clock().now();
+    const auto summary = (*session)->run(*planned);
+    ASSERT_TRUE(summary) << summary.error().message;
+    EXPECT_EQ(summary->end.outcome, procedures::RunOutcome::kFailed);
+    EXPECT_TRUE(summary->end.safe_state_reached);
+    const std::string says = fmt::format(
+        "gyro: sends {:.1f} frames a second by this machine's clock, expected 100", rate_hz);
+    EXPECT_TRUE(summary->end.reason.starts_with(says)) << summary->end.reason;
+    EXPECT_LT(drivers::to_seconds((*session)->clock().now() - begun), 12.0);
+    EXPECT_TRUE(record.points.empty());
+  }
 }
 
 TEST(Session, RecordsIntoWhatItsCallerKeeps) {

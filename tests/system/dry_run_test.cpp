@@ -45,6 +45,38 @@ TEST_F(FogbenchTest, ADryRunGoesFromPlanToExport) {
   EXPECT_EQ(fogbench({"export", "1", "--store", store()}).out, points);
 }
 
+TEST_F(FogbenchTest, AListOfAParameterMayHaveBlanks) {
+  const std::string compact = fogbench({"plan", "coil-sweep", "--set", "levels_ut=0,50,100"}).out;
+  EXPECT_NE(compact.find("100 uT"), std::string::npos) << compact;
+  const std::vector<std::vector<std::string>> written{
+      {"--set", "levels_ut=0, 50, 100"},        // quoted
+      {"--set", "levels_ut=0,", "50,", "100"},  // as the shell takes it apart
+      {"--set=levels_ut=", "0", ",50", ",100"},
+  };
+  for (const auto& set : written) {
+    std::vector<std::string> arguments{"plan"};
+    arguments.insert(arguments.end(), set.begin(), set.end());
+    arguments.push_back("coil-sweep");
+    const Finished plan = fogbench(arguments);
+    EXPECT_EQ(plan.status, 0) << plan.err;
+    EXPECT_EQ(plan.out, compact);
+  }
+}
+
+TEST_F(FogbenchTest, AnEditedCopyOfAReadyProcedureIsToldFromItWhereverARunIsNamed) {
+  const auto ready = tests::source_tree() / "config/procedures/static-record.json";
+  auto edited = nlohmann::json::parse(read_text(ready));
+  edited["parameters"]["duration_s"] = 20;
+  edited["parameters"]["average_s"] = 10;
+  const auto copy = folder_.file("static-record.json", edited.dump());
+  const std::string name = "static-record (static-record.json, not the ready one)";
+  EXPECT_NE(fogbench({"plan", copy.string()}).out.find(name), std::string::npos);
+  const Finished done = fogbench({"dry-run", copy.string(), "--seed", "1", "--store", store()});
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(json({"runs", "--store", store(), "--json"})["runs"][0]["procedure"], name);
+  EXPECT_NE(fogbench({"show", "1", "--store", store()}).out.find(name), std::string::npos);
+}
+
 TEST_F(FogbenchTest, OneSeedGivesTheSameBytesAndAnotherOneOthers) {
   for (const char* seed : {"3", "3", "4"}) {
     ASSERT_EQ(support::run(dry_run(kQuickSweep, {"--seed", seed})).status, 0);
