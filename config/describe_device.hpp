@@ -92,6 +92,9 @@ void describe(Visitor& v, ScpiDevice& d) {
   v.optional("output_on", d.output_on, "Command that switches the output on, where it has one.");
   v.optional("output_off", d.output_off, "Command that switches the output off, where it has one.");
   v.optional("error_query", d.error_query, "Query for the oldest entry of the error queue.");
+  v.optional(
+      "busy_errors", d.busy_errors,
+      "Numbers in the error queue that only say that it is busy: the command is sent again.");
   v.required("unit", d.unit,
              "Unit of the value, of its limits, resolution and tolerance: A, mA, deg, rad, ...");
   v.optional("scale", d.scale, "Value of one on the wire: value = number * scale.");

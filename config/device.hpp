@@ -74,8 +74,9 @@ struct ScpiDevice {
   std::string output_on;                ///< "OUTP ON"; empty when it has none
   std::string output_off;               ///< "OUTP OFF"
   std::string error_query = "SYST:ERR?";
-  std::string unit;    ///< of the value, "A" or "deg"
-  double scale = 1.0;  ///< value of one on the wire: 0.001 for a supply spoken to in mA
+  std::vector<int> busy_errors;  ///< numbers in the error queue that only ask for time
+  std::string unit;              ///< of the value, "A" or "deg"
+  double scale = 1.0;            ///< value of one on the wire: 0.001 for a supply spoken to in mA
   double minimum = 0.0;
   double maximum = 0.0;
   double resolution = 0.0;           ///< smallest step of the output

@@ -61,7 +61,9 @@ class ScpiDialogue {
   /// A question for the value, in the description's unit. Asks again once when the answer is no
   /// finite number; kProtocol when it is none again.
   Result<double> query_value(const std::string& question);
-  /// Sends it once, then empties the error queue. kDevice with every entry that was in it.
+  /// Sends it, then empties the error queue. kDevice with every entry that was in it; where all of
+  /// them say that the instrument is busy it is sent again for as long as a command's Patience has
+  /// it, then kBusy.
   Status command(const std::string& text);
   /// The description's `set` with {value} replaced, the value in the description's unit. When it
   /// was lost or its outcome unknown, what the instrument says that it was set to decides whether
