@@ -94,12 +94,14 @@ TEST_F(LoadTableTest, SaysWhatIsNotThere) {
 }
 
 TEST(Parameters, AreNumbersAndListsOfNumbers) {
-  const auto parameters = parse_parameters({"a=1.5", "b=1,-2e3,3"});
+  const auto parameters = parse_parameters({"a=1.5", "b=1,-2e3,3", "c= 0, 50 ,100 "});
   ASSERT_TRUE(parameters);
+  EXPECT_EQ(std::get<std::vector<double>>(parameters->at("c")),
+            (std::vector<double>{0.0, 50.0, 100.0}));
   EXPECT_EQ(std::get<double>(parameters->at("a")), 1.5);
   EXPECT_EQ(std::get<std::vector<double>>(parameters->at("b")),
             (std::vector<double>{1.0, -2000.0, 3.0}));
-  for (const char* wrong : {"a", "=1", "a=", "a=x", "a=1,", "a=inf", "a=1 "}) {
+  for (const char* wrong : {"a", "=1", "a=", "a=x", "a=1,", "a=inf", "a=1 2"}) {
     const auto refused = parse_parameters({wrong});
     ASSERT_FALSE(refused) << wrong;
     EXPECT_EQ(refused.error().code, ErrorCode::kUsage);

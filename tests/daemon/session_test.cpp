@@ -72,7 +72,7 @@ TEST(Session, AGyroOfAnotherFrameRateThanItsFileStatesEndsTheRunWithinSeconds) {
     EXPECT_TRUE(summary->end.safe_state_reached);
     const std::string says = fmt::format(
         "gyro: sends {:.1f} frames a second by this machine's clock, expected 100", rate_hz);
-    EXPECT_TRUE(summary->end.reason.starts_with(says)) << summary->end.reason;
+    EXPECT_NE(summary->end.reason.find(says), std::string::npos) << summary->end.reason;
     EXPECT_LT(drivers::to_seconds((*session)->clock().now() - begun), 12.0);
     EXPECT_TRUE(record.points.empty());
   }

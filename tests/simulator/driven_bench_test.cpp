@@ -153,9 +153,10 @@ TEST_F(DrivenBench, ReadsTheSameFromInstrumentsThatSpeakInOtherUnits) {
 
   const auto field = opened->magnetometer->read();
   ASSERT_TRUE(field) << field.error().message;
-  EXPECT_NEAR(field->field[0].value, -50.0, 0.5);
+  // Without its certificate, and beside a pair of coils that is not quite level.
+  EXPECT_NEAR(field->field[0].value, -50.0, 2.5);
   EXPECT_NEAR(field->field[1].value, 16.0 + 3.0 * config_.simulation.magnetic.coil_ut_per_a[1],
-              0.5);
+              2.5);
 
   drivers::GyroBlock block;
   clock.sleep_for(std::chrono::seconds(1));
