@@ -75,12 +75,15 @@ TEST_F(MakeSafe, TriesEveryInstrumentAndNamesAllThatFail) {
 
 TEST_F(MakeSafe, WhoIsGoneIsUnreachableAndDelaysNobody) {
   plant_.gone = [](const std::string& name) { return name.starts_with("coil_horizontal."); };
-  const SafetyReport report = make_safe(bench_);
-  EXPECT_EQ(state_of(report, "coil_horizontal"), Safety::State::kUnreachable);
-  EXPECT_EQ(state_of(report, "coil_vertical"), Safety::State::kReadBack);
-  EXPECT_EQ(state_of(report, "thermostat"), Safety::State::kReadBack);
-  EXPECT_FALSE(report.reached());
-  EXPECT_THAT(report.text(), HasSubstr("coil_horizontal unreachable (coil_horizontal."));
+  for (const ErrorCode code : {ErrorCode::kUnplugged, ErrorCode::kHeld}) {
+    plant_.gone_as = code;
+    const SafetyReport report = make_safe(bench_);
+    EXPECT_EQ(state_of(report, "coil_horizontal"), Safety::State::kUnreachable);
+    EXPECT_EQ(state_of(report, "coil_vertical"), Safety::State::kReadBack);
+    EXPECT_EQ(state_of(report, "thermostat"), Safety::State::kReadBack);
+    EXPECT_FALSE(report.reached());
+    EXPECT_THAT(report.text(), HasSubstr("coil_horizontal unreachable (coil_horizontal."));
+  }
 }
 
 TEST_F(MakeSafe, ALostMessageIsSentAgain) {

@@ -53,12 +53,14 @@ struct FakePlant {
     return false;
   };
 
-  /// Asked before every call with its name: true makes it fail as one to an unplugged instrument.
+  /// Asked before every call with its name: true makes it fail as one to an unplugged instrument,
+  /// or to one that another process has (kHeld).
   std::function<bool(const std::string&)> gone = [](const std::string&) { return false; };
+  ErrorCode gone_as = ErrorCode::kUnplugged;
 
   Status call(const std::string& name, bool changes = false) {
     follow();
-    if (gone(name)) return Error{ErrorCode::kUnplugged, name + ": unplugged"};
+    if (gone(name)) return Error{gone_as, name + ": unplugged"};
     if (changes) commands.push_back(name);
     if (fails(++calls, name)) return Error{ErrorCode::kTimeout, name + " did not answer"};
     return {};
