@@ -87,6 +87,7 @@ std::string describe(const config::ScpiDevice& d) {
   add("output on", d.output_on);
   add("output off", d.output_off);
   add("oldest error", d.error_query);
+  add("busy, asked again", fmt::format("{}", fmt::join(d.busy_errors, ", ")));
   return fmt::format(
       "values from {} to {} {} in steps of {}; a read-back more than {} {} off is an error, valid "
       "{} s after a set\n{}",
