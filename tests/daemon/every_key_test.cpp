@@ -199,7 +199,8 @@ std::string probes_of(const Subject& subject) {
   const BenchConfig& bench = subject.setup.bench;
   PatternRegisters registers;
   PatternReports reports;
-  std::string said = rows_of(drivers::probe(bench.thermostat.device, registers)) +
+  drivers::VirtualClock clock;
+  std::string said = rows_of(drivers::probe(bench.thermostat.device, registers, clock)) +
                      rows_of(drivers::probe(bench.magnetometer.device, reports));
   const config::FrameDevice& gyro = bench.gyro.device;
   std::vector<std::uint8_t> frame(gyro.frame_bytes);
@@ -209,7 +210,6 @@ std::string probes_of(const Subject& subject) {
   support::FakeLine line;
   for (int i = 0; i < 3; ++i) line.put(frame);
   support::FakeSerial serial(line);
-  drivers::VirtualClock clock;
   return said + rows_of(drivers::probe(gyro, serial, clock));
 }
 
