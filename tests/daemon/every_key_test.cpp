@@ -25,6 +25,7 @@
 #include "tests/daemon/pattern_instruments.hpp"
 #include "tests/support/fake_transports.hpp"
 #include "tests/support/memory_recorder.hpp"
+#include "tests/support/own_locks.hpp"
 #include "tests/support/pty.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -327,6 +328,7 @@ class EveryKey : public testing::TestWithParam<std::string> {
   }
 
   support::TemporaryFolder folder_;
+  support::OwnLocks locks_;
 };
 
 TEST_P(EveryKey, HasAnEffect) {
@@ -342,7 +344,8 @@ TEST_P(EveryKey, HasAnEffect) {
 
   std::vector<std::string> without_effect;
   std::size_t keys = 0;
-  for (const auto& [pointer, value] : original.flatten().items()) {
+  const json leaves = original.flatten();
+  for (const auto& [pointer, value] : leaves.items()) {
     ++keys;
     std::size_t accepted = 0;
     bool shown = false;
