@@ -14,7 +14,7 @@ inline constexpr auto kFurtherKeys = R"({
   "limits": {"compensation_maximum_ut": 55, "absence_maximum_s": 30},
   "estimates": {"room_c": 21, "heating_c_per_h": 45, "cooling_c_per_h": 10, "settling_s": 1400,
                 "compensation_s": 15, "operator_answer_s": 60},
-  "simulation": {"gyro_frame_rate_hz": 100.05, "magnetic": {"ambient_steps_per_h": 600}}})";
+  "simulation": {"magnetic": {"ambient_steps_per_h": 600}}})";
 
 /// Keys that tell people something; nothing is done with them but to record them.
 inline bool is_for_people(std::string_view pointer) {
@@ -31,8 +31,8 @@ inline std::vector<nlohmann::json> changes_of(const std::string& pointer,
   if (value.is_boolean()) return {!value.get<bool>()};
   if (value.is_number_integer()) {
     const auto number = value.get<std::int64_t>();
-    return {number + 1,  number - 1,  2 * number, number / 2, 10 * number, 1,
-            number + 30, number - 30, 0,          -number,    1e-6};
+    return {number + 1, number - 1,  2 * number,  number / 2, number / 6, 10 * number,
+            1,          number + 30, number - 30, 0,          -number,    1e-6};
   }
   if (value.is_number()) {
     const double number = value.get<double>();
@@ -42,8 +42,7 @@ inline std::vector<nlohmann::json> changes_of(const std::string& pointer,
   const auto text = value.get<std::string>();
   if (text.starts_with("0x")) {
     const auto number = std::stoll(text.substr(2), nullptr, 16);
-    return {number + 1,  number - 1,  2 * number, number / 2, 10 * number, 1,
-            number + 30, number - 30, 0,          -number,    1e-6};
+    return {number + 1, number - 1, number ^ 0x10};
   }
   const auto ends = [&](const char* key) { return pointer.ends_with(key); };
   if (ends("connection")) {

@@ -10,7 +10,7 @@
 namespace fogbench::daemon {
 
 inline std::uint8_t pattern(std::size_t at) {
-  return static_cast<std::uint8_t>(0x21 + at * 7 % 0x1F);
+  return static_cast<std::uint8_t>(0xA1 + at * 7 % 0x1F);
 }
 class PatternRegisters final : public drivers::ModbusTransport {
  public:
