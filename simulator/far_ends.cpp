@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -53,6 +54,16 @@ class Lines {
 
 }  // namespace
 
+void FarEnds::set_fault(std::string_view device, FaultKind kind, bool on) {
+  if (device == "thermostat") return thermostat->set_fault(kind, on);
+  if (device == "coil_horizontal") return coil_horizontal->set_fault(kind, on);
+  if (device == "coil_vertical") return coil_vertical->set_fault(kind, on);
+  if (device == "magnetometer") return magnetometer->set_fault(kind, on);
+  if (device == "turntable") return turntable->set_fault(kind, on);
+  assert(device == "gyro");
+  gyro->set_fault(kind, on);
+}
+
 Result<FarEnds> make_far_ends(const config::BenchConfig& config,
                               const config::ScenarioConfig& scenario, std::uint64_t seed,
                               drivers::Clock& clock, drivers::Clock::Duration late_by) {
@@ -69,6 +80,7 @@ Result<FarEnds> make_far_ends(const config::BenchConfig& config,
   const Lines lines(scenario, seed, plant, clock, late_by);
 
   FarEnds ends;
+  ends.plant = plant;
   {
     Result<InstrumentLine> line = lines.to("thermostat", ModbusFarEnd::kFaults);
     if (!line) return line.error();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "config/bench.hpp"
 #include "config/scenario.hpp"
@@ -21,6 +22,10 @@ struct FarEnds {
   std::unique_ptr<HidFarEnd> magnetometer;
   std::unique_ptr<ScpiFarEnd> turntable;
   std::unique_ptr<GyroFarEnd> gyro;
+  std::shared_ptr<Plant> plant;  ///< what is true, whatever they say
+
+  /// A fault by hand, from now on until it is switched off. Precondition: the bench has the device.
+  void set_fault(std::string_view device, FaultKind kind, bool on);
 };
 
 /// As simulate_bench, which puts them behind the drivers' transports. A late answer comes `late_by`

@@ -45,7 +45,16 @@ void FaultSchedule::begin(std::string_view operation) {
   }
 }
 
+void FaultSchedule::set(FaultKind kind, bool on) {
+  if (on) {
+    by_hand_.insert(kind);
+  } else {
+    by_hand_.erase(kind);
+  }
+}
+
 bool FaultSchedule::active(FaultKind kind, double time_s) const {
+  if (by_hand_.contains(kind)) return true;
   return std::any_of(faults_.begin(), faults_.end(), [&](const Fault& fault) {
     const config::FaultSpec& spec = fault.spec;
     if (spec.kind != kind || !fault.applies) return false;
@@ -57,6 +66,7 @@ bool FaultSchedule::active(FaultKind kind, double time_s) const {
 }
 
 bool FaultSchedule::unplugged(double time_s) const {
+  if (by_hand_.contains(FaultKind::kUnplug)) return true;
   return std::any_of(faults_.begin(), faults_.end(), [&](const Fault& fault) {
     const config::FaultSpec& spec = fault.spec;
     return spec.kind == FaultKind::kUnplug && !spec.at_operation && spec.operation.empty() &&

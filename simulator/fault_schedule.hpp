@@ -1,8 +1,9 @@
 #pragma once
-// When one instrument misbehaves, and how: at a time, or in the n-th of its operations.
+// When one instrument misbehaves, and how: at a time, in the n-th of its operations, or by hand.
 
 #include <cstdint>
 #include <initializer_list>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,9 @@ class FaultSchedule {
   bool active(FaultKind kind, double time_s) const;
   /// Whether the plug is out at that time, not only for one operation.
   bool unplugged(double time_s) const;
-  bool empty() const { return faults_.empty(); }
+  /// A fault by hand: of every operation from now on, until it is switched off.
+  void set(FaultKind kind, bool on);
+  bool empty() const { return faults_.empty() && by_hand_.empty(); }
 
  private:
   struct Fault {
@@ -37,6 +40,7 @@ class FaultSchedule {
     bool applies = true;     ///< to the present operation, by its name
   };
   std::vector<Fault> faults_;
+  std::set<FaultKind> by_hand_;
 };
 
 }  // namespace fogbench::simulator

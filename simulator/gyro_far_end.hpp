@@ -40,6 +40,7 @@ class GyroFarEnd final : public drivers::SerialTransport {
   /// Takes every command and does nothing.
   Status write(std::span<const std::byte> bytes) override;
   bool plugged() const { return !faults_.unplugged(plant_->now_s()); }
+  void set_fault(FaultKind kind, bool on) { faults_.set(kind, on); }
 
  private:
   /// Frames complete by now.

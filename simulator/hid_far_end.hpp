@@ -28,6 +28,7 @@ class HidFarEnd final : public drivers::HidTransport {
   /// Takes every output report and does nothing.
   Status write_report(std::span<const std::uint8_t> report) override;
   bool plugged() const { return line_.plugged(); }
+  void set_fault(FaultKind kind, bool on) { line_.set_fault(kind, on); }
 
  private:
   /// Number of the newest report that exists; 0 is none.

@@ -43,6 +43,7 @@ class InstrumentLine {
   /// False while its plug is out, whoever asks; not for one that an operation pulls.
   bool plugged() const { return !faults_.unplugged(plant_->now_s()); }
   bool fault(FaultKind kind) const { return faults_.active(kind, plant_->now_s()); }
+  void set_fault(FaultKind kind, bool on) { faults_.set(kind, on); }
   Plant& plant() { return *plant_; }
   const Plant& plant() const { return *plant_; }
   drivers::Clock& clock() { return clock_; }

@@ -32,6 +32,7 @@ class ModbusFarEnd final : public drivers::ModbusTransport {
   /// Of the last call; 0 when it did not end with an exception.
   int last_exception() const { return last_exception_; }
   bool plugged() const { return line_.plugged(); }
+  void set_fault(FaultKind kind, bool on) { line_.set_fault(kind, on); }
 
  private:
   /// What the scenario calls a write to that address.

@@ -65,6 +65,7 @@ std::string_view ScpiFarEnd::operation_of(std::string_view message) const {
 Status ScpiFarEnd::write(std::string_view message) {
   line_.begin(operation_of(message));
   if (Status s = line_.request(kMessage, kWriteTimeout); !s) return s;
+  if (hears_) hears_(message);
   output_->open_circuit(line_.plant(), line_.fault(FaultKind::kOpenCircuit));
   if (answer_) fail(-410, "Query INTERRUPTED");
   answer_.reset();

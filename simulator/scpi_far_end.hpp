@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,6 +64,9 @@ class ScpiFarEnd final : public drivers::MessageTransport {
   /// As a serial poll reads it, IEEE 488.2: bit 4 an answer waits, bit 2 an error is queued.
   Result<std::uint8_t> read_status_byte();
   bool plugged() const { return line_.plugged(); }
+  void set_fault(FaultKind kind, bool on) { line_.set_fault(kind, on); }
+  /// Called with every message that reaches it.
+  void on_message(std::function<void(std::string_view)> hears) { hears_ = std::move(hears); }
 
  private:
   /// What the scenario calls this message; a message and the reading of its answer are one
@@ -79,6 +83,7 @@ class ScpiFarEnd final : public drivers::MessageTransport {
   const config::ScpiDevice device_;
   std::unique_ptr<ScpiOutput> output_;
   InstrumentLine line_;
+  std::function<void(std::string_view)> hears_;
   std::deque<std::string> errors_;
   std::optional<std::string> answer_;
   std::optional<std::string> last_setpoint_, last_measurement_;

@@ -63,11 +63,12 @@ bool PseudoTerminal::make_fresh() {
   return true;
 }
 
-bool PseudoTerminal::in_use() {
+bool PseudoTerminal::in_use(Bytes* last_words, std::size_t most) {
   if (!ours_) return false;
   pollfd ours{ours_.get(), 0, 0};
   poll(&ours, 1, 0);
   const bool used = (ours.revents & POLLHUP) == 0;
+  if (was_in_use_ && !used && last_words != nullptr) receive(*last_words, most);
   if (was_in_use_ && !used && !make_fresh()) {
     // A host that was killed has left it closed to all others: there is no way back but a new one.
     unplug();

@@ -29,8 +29,9 @@ class PseudoTerminal {
 
   const std::filesystem::path& link() const { return link_; }
 
-  /// Whether a host has it open. When the last one has closed it, what it left unread is forgotten.
-  bool in_use();
+  /// Whether a host has it open. When the last one has closed it, what it said before is appended
+  /// to `last_words`, where given, up to `most` bytes in all, and what it left unread is forgotten.
+  bool in_use(Bytes* last_words = nullptr, std::size_t most = 0);
   void enlist(PollSet& set, short events) const;
   /// Appends what the host has sent, up to `most` bytes in all.
   void receive(Bytes& input, std::size_t most);

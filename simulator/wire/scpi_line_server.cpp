@@ -32,10 +32,13 @@ void ScpiLineServer::serve(const PollSet&) {
     return terminal_.unplug();
   }
   if (!terminal_.plug()) return;  // At the next turn, perhaps.
-  if (!terminal_.in_use()) return forget();
-  terminal_.receive(input_, kLongestLine);
-  while (take_line()) {
-  }
+  // Nobody need wait for an answer: what was sent is executed all the same.
+  const bool heard = terminal_.in_use(&input_, kLongestLine);
+  if (heard) terminal_.receive(input_, kLongestLine);
+  do {
+    if (!heard) answer_.clear();
+  } while (take_line());
+  if (!heard && std::find(input_.begin(), input_.end(), '\n') == input_.end()) forget();
 }
 
 bool ScpiLineServer::take_line() {

@@ -58,6 +58,20 @@ TEST(FaultSchedule, ATimeCanBeNarrowedToAnOperation) {
   EXPECT_EQ(spoilt(scheduled(by_time(2.0, 4.0, "read")), kOperations), "..x.xx..");
 }
 
+TEST(FaultSchedule, AFaultByHandLastsUntilItIsSwitchedOff) {
+  FaultSchedule schedule;
+  EXPECT_TRUE(schedule.empty());
+  schedule.set(FaultKind::kUnplug, true);
+  EXPECT_FALSE(schedule.empty());
+  schedule.begin("read");
+  EXPECT_TRUE(schedule.active(FaultKind::kUnplug, 0.0));
+  EXPECT_TRUE(schedule.unplugged(1e6));
+  EXPECT_FALSE(schedule.active(FaultKind::kTimeout, 0.0));
+  schedule.set(FaultKind::kUnplug, false);
+  EXPECT_FALSE(schedule.active(FaultKind::kUnplug, 0.0));
+  EXPECT_FALSE(schedule.unplugged(0.0));
+}
+
 TEST(FaultSchedule, TakesOnlyItsOwnInstrumentsFaults) {
   const auto other = FaultSchedule::create({by_count(1, 1)}, "gyro", {});
   ASSERT_TRUE(other);

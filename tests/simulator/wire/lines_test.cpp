@@ -128,6 +128,23 @@ TEST_F(LinesTest, ModbusTcpServesSeveralAndClosesOnGarbage) {
   EXPECT_EQ(half.receive(11).size(), 11U);
 }
 
+TEST_F(LinesTest, TheTurntableObeysWhatAHostSaidBeforeItHungUp) {
+  {
+    Line last_words(tty("turntable"));
+    ASSERT_TRUE(last_words.opened());
+    last_words.send("POS?\n");
+    EXPECT_NE(last_words.line(), "");
+    last_words.send("\nPOS 12.5\nMEAS:POS?\n");
+  }
+  std::string setting;
+  for (int i = 0; i < 50 && setting != "1.250000E+01\n"; ++i) {
+    Line next(tty("turntable"));
+    next.send("POS?\n");
+    setting = next.line();
+  }
+  EXPECT_EQ(setting, "1.250000E+01\n");
+}
+
 TEST_F(LinesTest, ModbusRtuIsTheSameControllerOnALine) {
   Wire wire(modbus_port());
   EXPECT_EQ(ask(wire, kWriteTarget), kWriteTarget);
