@@ -344,8 +344,9 @@ void RunDesk::run_ended(const Result<procedures::RunSummary>& summary) {
   EndedRun ended{view_.run->job, view_.run->run, view_.run->procedure, view_.run->by};
   ended.points = view_.run->points;
   ended.gyro = view_.run->gyro;
-  // Nothing was commanded in a run that never came to an end of its own.
-  ended.safe_state_reached = !end_ || end_->safe_state_reached;
+  // One that did not begin has no end of its own.
+  ended.safe_state_reached =
+      end_ ? end_->safe_state_reached : engine_ == nullptr || engine_->left_safe();
   ended.outcome = name_of(summary ? summary->end.outcome : procedures::RunOutcome::kFailed);
   ended.reason = summary ? summary->end.reason : summary.error().message;
   if (!queue_.empty()) {

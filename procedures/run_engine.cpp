@@ -133,6 +133,7 @@ Result<RunEnd> RunEngine::Run::finish(const Status& outcome) {
   enter(outcome ? RunEvent::kDone : (aborted ? RunEvent::kAbort : RunEvent::kFail));
   try_to_report("coils to 0 A, heaters off");
   const Status safe = drivers::make_safe(engine_.bench_).status();
+  engine_.left_safe_ = static_cast<bool>(safe);
 
   RunEnd end;
   end.outcome =
@@ -201,6 +202,14 @@ Status RunEngine::keep_watch() {
   return run_->keep_watch();
 }
 
+Error RunEngine::not_begun(Error why) {
+  // Nobody has watched the bench since the last run.
+  const Status safe = drivers::make_safe(bench_).status();
+  left_safe_ = static_cast<bool>(safe);
+  if (!safe) why.message += "; " + safe.error().message;
+  return why;
+}
+
 Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {
   const auto running = next_state(state_, RunEvent::kStart);
   if (!running) {
@@ -216,9 +225,9 @@ Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {
     }
   } const forget{*this};
   const auto instruments = identify_instruments(header.gyro_serial_number);
-  if (!instruments) return instruments.error();
+  if (!instruments) return not_begun(instruments.error());
   const auto number = recorder_.begin_run(header, *instruments);
-  if (!number) return number.error();
+  if (!number) return not_begun(number.error());
   state_ = *running;
 
   Run run(*this, plan);

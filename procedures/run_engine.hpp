@@ -66,9 +66,13 @@ class RunEngine {
   void wait_for_record() { waits_for_record_ = true; }
 
   /// Ends in the safe state whatever happens. An error is returned only when the run could not
-  /// be recorded (kStore, the bench is made safe all the same) or begun (nothing was commanded); a
-  /// failed or aborted run is a RunSummary that says so. An engine may run again after an end.
+  /// be recorded (kStore) or begun, the bench is made safe all the same; a failed or aborted run is
+  /// a RunSummary that says so. An engine may run again after an end.
   Result<RunSummary> run(const Plan& plan, const RunHeader& header);
+
+  /// Whether every actuator was off, read back, after the last call of run(), or run() was never
+  /// called.
+  bool left_safe() const { return left_safe_; }
 
   /// Asks each instrument who it is. The gyro under test comes and goes: its serial number is the
   /// run's, the others' are the bench's. Errors: the instrument's.
@@ -89,6 +93,9 @@ class RunEngine {
  private:
   class Run;
 
+  /// The error of a run that did not begin, with whatever is not off.
+  Error not_begun(Error why);
+
   const config::BenchConfig& config_;
   drivers::Bench& bench_;
   drivers::Clock& clock_;
@@ -98,6 +105,7 @@ class RunEngine {
   std::function<void(const Point&)> point_;
   RunState state_ = RunState::kIdle;
   bool waits_for_record_ = false;
+  bool left_safe_ = true;
   Run* run_ = nullptr;  ///< the one under way
   std::atomic<bool> abort_requested_{false};
   std::atomic<bool> pause_requested_{false};

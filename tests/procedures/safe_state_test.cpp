@@ -23,8 +23,9 @@ int check_end(const std::function<bool(int, const std::string&)>& fails, const s
   rig.plant.fails = fails;
   const auto summary = rig.run(everything());
   if (!summary) {
-    // Not begun: nothing was commanded.
-    EXPECT_TRUE(rig.plant.commands.empty()) << what;
+    // Not begun: a bench that was safe is left as it was, whatever was answered.
+    EXPECT_TRUE(rig.plant.safe()) << what;
+    EXPECT_TRUE(rig.log.headers.empty()) << what;
     return rig.plant.calls;
   }
   const RunEnd& end = summary->end;
@@ -153,19 +154,41 @@ TEST(SafeState, AnEngineRunsAgainAfterAnObserverThrew) {
   EXPECT_EQ(rig.summary_of({average(3.0)}).end.outcome, RunOutcome::kCompleted);
 }
 
-TEST(SafeState, ARunThatCannotBeBegunTouchesNothing) {
+/// As somebody at the front panels left it.
+void leave_energised(Rig& rig) {
+  rig.plant.current_a = {3.0, -2.0};
+  rig.plant.output_on = {true, true};
+  rig.plant.mode = HeatingMode::kBoost;
+}
+
+TEST(SafeState, ARunThatCannotBeBegunEndsInItToo) {
   Rig unrecorded;
+  leave_energised(unrecorded);
   unrecorded.log.fails = [](const std::string& call) { return call == "begin_run"; };
   EXPECT_FALSE(unrecorded.run(everything()));
-  EXPECT_TRUE(unrecorded.plant.commands.empty());
+  EXPECT_TRUE(unrecorded.plant.safe());
+  EXPECT_TRUE(unrecorded.engine.left_safe());
   Rig unknown;
+  leave_energised(unknown);
   unknown.plant.fails = [](int, const std::string& name) {
     return name == "coil_vertical.identity";
   };
   const auto summary = unknown.run(everything());
   ASSERT_FALSE(summary);
   EXPECT_THAT(summary.error().message, HasSubstr("coil_vertical: "));
-  EXPECT_TRUE(unknown.plant.commands.empty());
+  EXPECT_TRUE(unknown.plant.safe());
+}
+
+TEST(SafeState, ARunThatCannotBeBegunNamesWhoIsNotInIt) {
+  Rig rig;
+  leave_energised(rig);
+  rig.plant.fails = [](int, const std::string& name) { return name.starts_with("coil_vertical."); };
+  const auto summary = rig.run(everything());
+  ASSERT_FALSE(summary);
+  EXPECT_THAT(summary.error().message,
+              HasSubstr("; the safe state is not confirmed for coil_vertical commanded off"));
+  EXPECT_EQ(rig.plant.current_a[0], 0.0);
+  EXPECT_FALSE(rig.engine.left_safe());
 }
 
 TEST(SafeState, NothingIsCommandedWhileAPlanIsMade) {
