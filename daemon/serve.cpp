@@ -101,12 +101,15 @@ bool begin_bench(Session& session, RunDesk& desk, std::string& said) {
   std::string missing;
   for (;;) {
     const Status begun = session.begin();
-    if (begun) {
+    const drivers::SafetyReport safety = session.make_safe();
+    report(safety, said);
+    if (begun && safety.reached()) {
       desk.bench_waits_for({});
       return true;
     }
-    if (begun.error().message != missing) {
-      missing = begun.error().message;
+    const Error error = begun ? safety.status().error() : begun.error();
+    if (error.message != missing) {
+      missing = error.message;
       spdlog::error("{}; waiting for it", missing);
       desk.bench_waits_for(missing);
     }
@@ -114,7 +117,6 @@ bool begin_bench(Session& session, RunDesk& desk, std::string& said) {
       if (!desk.still_open()) return false;
       drivers::SteadyClock().sleep_for(kBetweenLooks);
     }
-    report(session.make_safe(), said);
   }
 }
 
@@ -148,6 +150,8 @@ void run_jobs(Session& session, RunDesk& desk, DeskOperator& person, procedures:
         spdlog::error("job {}, {}: {}", job->job, name, summary.error().message);
       }
       desk.run_ended(summary);
+      // What could not be reached carries what it carried, whether or not another job comes.
+      if (!session.engine().left_safe()) begin_bench(session, desk, said);
     }
   } catch (const std::exception& error) {
     end_at_once(fmt::format("an unexpected error: {}", error.what()), &session);
