@@ -131,6 +131,16 @@ Status describe(Database& database, std::string_view table, const Columns& colum
   return {};
 }
 
+/// Nobody's tables, and nobody's mark: an empty file, or one whose maker was stopped at once.
+Result<bool> is_blank(Database& database) {
+  const auto application = database.integer("PRAGMA application_id");
+  if (!application) return application.error();
+  const auto tables = database.integer("SELECT count(*) FROM sqlite_master");
+  if (!tables) return tables.error();
+  return *application == 0 && *tables == 0;
+}
+
+/// Changes nothing where another program has made it meanwhile.
 Status create_schema(Database& database) {
   // Pages of 16 KiB suit blobs of some 200 KiB. WAL is kept in the file from here on.
   if (const Status ok = database.execute("PRAGMA page_size = 16384; PRAGMA journal_mode = WAL");
@@ -139,6 +149,9 @@ Status create_schema(Database& database) {
   }
   auto transaction = Transaction::begin(database);
   if (!transaction) return transaction.error();
+  if (const auto blank = is_blank(database); !blank || !*blank) {
+    return blank ? Status{} : blank.error();
+  }
   const std::string sql = fmt::format(
       "{}"
       "CREATE TABLE points (point INTEGER PRIMARY KEY, run INTEGER NOT NULL REFERENCES runs, "
@@ -192,6 +205,11 @@ Status add_continuations(Database& database) {
 }
 
 Status check_schema(Database& database, const fs::path& path) {
+  const auto blank = is_blank(database);
+  if (!blank) return blank.error();
+  if (*blank) {
+    return Error{ErrorCode::kBadInput, fmt::format("{}: empty, no run log yet", path.string())};
+  }
   const auto application = database.integer("PRAGMA application_id");
   if (!application) return application.error();
   if (*application != kApplicationId) {
@@ -206,6 +224,16 @@ Status check_schema(Database& database, const fs::path& path) {
                              path.string(), *version, kSchemaVersion)};
   }
   return {};
+}
+
+/// Where a link points, though nothing may be there yet.
+fs::path without_links(fs::path path) {
+  constexpr int kMostLinks = 40;  // as the kernel
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+    path = path.parent_path() / fs::read_symlink(path, error);
+  }
+  return path;
 }
 
 /// Makes the schema in a file of its own, then puts it in place: whoever is killed meanwhile, and
@@ -281,10 +309,15 @@ Result<std::unique_ptr<Database>> open_store_for_writing(const fs::path& path) {
   make_default_folder(path);
   std::error_code error;
   if (!fs::exists(path, error)) {
-    if (const Status made = create_store(path); !made) return made.error();
+    if (const Status made = create_store(without_links(path)); !made) return made.error();
   }
   auto database = Database::open(path, Database::Mode::kWrite);
   if (!database) return database;
+  if (const auto blank = is_blank(**database); !blank) {
+    return blank.error();
+  } else if (*blank) {
+    if (const Status made = create_schema(**database); !made) return made.error();
+  }
   if (const Status ok = check_schema(**database, path); !ok) return ok.error();
   if (const Status ok = add_new_columns(**database); !ok) return ok.error();
   if (const Status ok = add_continuations(**database); !ok) return ok.error();

@@ -47,7 +47,8 @@ void make_default_folder(const std::filesystem::path& store);
 Result<std::unique_ptr<Database>> open_store(const std::filesystem::path& path);
 
 /// Opens a run log for writing and makes it when there is none: a new one appears complete or not
-/// at all. Missing folders are made for the default store only.
+/// at all. An empty file becomes one, and so does what a link points to. Missing folders are made
+/// for the default store only.
 Result<std::unique_ptr<Database>> open_store_for_writing(const std::filesystem::path& path);
 
 }  // namespace fogbench::daemon

@@ -35,11 +35,34 @@ TEST(Store, RefusesWhatIsNotARunLog) {
   for (std::size_t i = 0; i < junk.size(); ++i) junk[i] = static_cast<char>(i * 37);
   expect_refused(folder.file("junk.db", junk), ErrorCode::kBadInput, "not an SQLite database");
   expect_refused(folder.file("text.db", "hello"), ErrorCode::kBadInput, "not a");
-  expect_refused(folder.file("empty.db", ""), ErrorCode::kBadInput, "not a run log");
   expect_refused(folder.path(), ErrorCode::kBadInput, "not a regular file");
   std::filesystem::create_symlink(folder / "loop.db", folder / "loop.db");
   expect_refused(folder / "loop.db", ErrorCode::kBadInput, "symbolic links");
   EXPECT_EQ(read_text(folder / "junk.db"), junk);
+}
+
+TEST(Store, AnEmptyFileBecomesOne) {
+  const support::TemporaryFolder folder;
+  const auto empty = folder.file("empty.db", "");
+  const auto read = open_store(empty);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::kBadInput);
+  EXPECT_EQ(read.error().message, empty.string() + ": empty, no run log yet");
+  EXPECT_EQ(std::filesystem::file_size(empty), 0U) << "a reader makes nothing";
+  { ASSERT_TRUE(open_store_for_writing(empty)); }
+  EXPECT_TRUE(open_store(empty));
+  EXPECT_TRUE(open_store_for_writing(empty)) << "and is one then";
+}
+
+TEST(Store, ALinkToOneThatIsStillToBeMadeIsFollowed) {
+  const support::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "disk");
+  std::filesystem::create_symlink("disk/real.db", folder / "near.db");
+  std::filesystem::create_symlink(folder / "near.db", folder / "far.db");
+  { ASSERT_TRUE(open_store_for_writing(folder / "far.db")); }
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "far.db"));
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder / "disk/real.db"));
+  EXPECT_TRUE(open_store(folder / "near.db"));
 }
 
 TEST(Store, RefusesAnotherProgramsDatabase) {
