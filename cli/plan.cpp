@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "cli/command.hpp"
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
 #include "daemon/session.hpp"
 #include "procedures/estimate.hpp"
+#include "procedures/planned_points.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -19,24 +22,36 @@ struct PlanOptions {
 };
 
 nlohmann::ordered_json to_json(const procedures::Plan& plan, const std::string& bench) {
-  nlohmann::ordered_json document{{"procedure", plan.procedure},
-                                  {"bench", bench},
-                                  {"estimate_s", plan.estimate.count()},
-                                  {"limits_met", plan.limits_met},
-                                  {"steps", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json document{
+      {"procedure", plan.procedure},         {"bench", bench},
+      {"estimate_s", plan.estimate.count()}, {"points", procedures::planned_points(plan)},
+      {"limits_met", plan.limits_met},       {"steps", nlohmann::ordered_json::array()}};
   for (const auto& step : plan.steps) {
     document["steps"].push_back({{"path", step.path},
                                  {"test", step.test},
                                  {"block", step.block},
                                  {"says", step.says},
-                                 {"estimate_s", step.estimate.count()}});
+                                 {"estimate_s", step.estimate.count()},
+                                 {"points", procedures::planned_points(step)}});
   }
   return document;
 }
 
+/// "82 points, and what settling takes" of a plan that records on the way to a temperature.
+std::string planned_text(const procedures::Plan& plan) {
+  if (!procedures::measures(plan)) return "no points";
+  const std::size_t points = procedures::planned_points(plan);
+  const bool more = std::any_of(plan.steps.begin(), plan.steps.end(), [](const auto& step) {
+    const auto* settle = std::get_if<procedures::SettleTemperature>(&step.action);
+    return settle != nullptr && !settle->segment.empty();
+  });
+  return fmt::format("{} {}{}", points, points == 1 ? "point" : "points",
+                     more ? " and those on the way to a temperature" : "");
+}
+
 void print_plan(const procedures::Plan& plan, const std::string& bench) {
-  fmt::print("{} on bench {}: {} steps, about {}\n\n", plan.procedure, bench, plan.steps.size(),
-             procedures::duration_text(plan.estimate));
+  fmt::print("{} on bench {}: {} steps, about {}, {}\n\n", plan.procedure, bench, plan.steps.size(),
+             procedures::duration_text(plan.estimate), planned_text(plan));
   using Align = TextTable::Align;
   TextTable table({{"step", "", Align::kLeft},
                    {"starts after", ""},

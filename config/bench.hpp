@@ -67,6 +67,9 @@ struct BenchLimits {
   /// How long a run waits, coils at 0 A, for an instrument that was unplugged: time to find the
   /// cable, and to plug it in again.
   Seconds absence_maximum{120.0};
+  /// How long a run waits, coils at 0 A, for a run log that cannot be written: a disk that fills up
+  /// in the evening is emptied in the morning, and until then nothing is lost but time.
+  Seconds record_wait_maximum{43200.0};
   Seconds run_time_maximum{172800.0};
 };
 

@@ -119,6 +119,8 @@ void describe(Visitor& v, BenchLimits& l) {
              at_least(0));
   v.optional("absence_maximum_s", l.absence_maximum,
              "How long a run waits for an instrument that was unplugged.", above(0));
+  v.optional("record_wait_maximum_s", l.record_wait_maximum,
+             "How long a run waits, coils at 0 A, for a run log that cannot be written.", above(0));
   v.optional("run_time_maximum_s", l.run_time_maximum, "Longest run.", above(0));
 }
 

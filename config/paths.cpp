@@ -10,6 +10,21 @@
 namespace fogbench::config {
 namespace fs = std::filesystem;
 
+namespace {
+
+std::string ready_names(const fs::path& folder) {
+  std::error_code error;
+  std::vector<std::string> known;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".json") known.push_back(entry->path().stem().string());
+  }
+  std::sort(known.begin(), known.end());
+  return fmt::format("{}", fmt::join(known, ", "));
+}
+
+}  // namespace
+
 Result<fs::path> config_directory() {
   if (const char* set = std::getenv("FOGBENCH_CONFIG_DIR")) {  // NOLINT(concurrency-mt-unsafe)
     std::error_code ignored;
@@ -33,14 +48,25 @@ Result<fs::path> config_directory() {
                "name it in FOGBENCH_CONFIG_DIR"};
 }
 
+Result<fs::path> find_ready(const std::string& kind, const std::string& name) {
+  const auto directory = config_directory();
+  if (!directory) return directory.error();
+  const fs::path folder = *directory / kind;
+  const fs::path candidate = folder / (name + ".json");
+  std::error_code error;
+  const bool plain = name.find('/') == std::string::npos;
+  if (plain && fs::is_regular_file(candidate, error)) return candidate;
+  return Error{ErrorCode::kBadInput,
+               fmt::format("{}: none of the ready {} ({})", name, kind, ready_names(folder))};
+}
+
 Result<fs::path> find_config(const std::string& kind, const std::string& name) {
   std::error_code error;
   if (fs::is_regular_file(name, error)) return fs::path(name);
   const auto directory = config_directory();
   if (!directory) return directory.error();
-  const fs::path folder = *directory / kind;
-  const fs::path candidate = folder / (name + ".json");
-  if (fs::is_regular_file(candidate, error)) return candidate;
+  auto ready = find_ready(kind, name);
+  if (ready) return ready;
 
   if (const fs::file_status status = fs::status(name, error); fs::exists(status)) {
     return Error{ErrorCode::kBadInput,
@@ -51,14 +77,8 @@ Result<fs::path> find_config(const std::string& kind, const std::string& name) {
     return Error{ErrorCode::kBadInput, fmt::format("{}: {}", name, error.message())};
   }
 
-  std::vector<std::string> known;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    if (entry->path().extension() == ".json") known.push_back(entry->path().stem().string());
-  }
-  std::sort(known.begin(), known.end());
   return Error{ErrorCode::kBadInput, fmt::format("{}: no such file, and none of the ready {} ({})",
-                                                 name, kind, fmt::join(known, ", "))};
+                                                 name, kind, ready_names(*directory / kind))};
 }
 
 }  // namespace fogbench::config

@@ -18,4 +18,7 @@ Result<std::filesystem::path> config_directory();
 /// that exist.
 Result<std::filesystem::path> find_config(const std::string& kind, const std::string& name);
 
+/// The file of a ready one: never a path. kBadInput with the names that exist.
+Result<std::filesystem::path> find_ready(const std::string& kind, const std::string& name);
+
 }  // namespace fogbench::config

@@ -18,7 +18,8 @@ class RunEngine::Run {
   /// An indivisible block is begun at most this often.
   static constexpr int kBlockTries = 3;
 
-  Run(RunEngine& engine, const Plan& plan)
+  /// `points_before`: those of the run that is taken up.
+  Run(RunEngine& engine, const Plan& plan, std::size_t points_before)
       : engine_(engine),
         plan_(plan),
         watch_(engine.config_, engine.bench_, engine.clock_, engine.recorder_,
@@ -27,6 +28,7 @@ class RunEngine::Run {
             engine.config_, engine.bench_, engine.operator_, watch_,
             [this] { return after_tick(); }, [this](const Point& point) { return record(point); }),
         remaining_(plan),
+        points_before_(points_before),
         started_(engine.clock_.now()),
         step_started_(started_) {
     engine_.run_ = this;
@@ -61,6 +63,8 @@ class RunEngine::Run {
   Status after_tick();
   Status record(const Point& point);
   void enter(RunEvent event);
+  /// While it lives, every report tells how long something has been waited for.
+  class Waits;
   void report(const std::string& says) const;
   /// Of the end: whoever displays it must not keep the bench from its safe state.
   void try_to_report(const std::string& says) const;
@@ -70,6 +74,7 @@ class RunEngine::Run {
   BenchWatch watch_;
   RunSession session_;
   RemainingTime remaining_;
+  std::size_t points_before_;
   drivers::Clock::Instant started_, step_started_;
   std::size_t step_ = 0;
   std::string says_;
@@ -77,6 +82,27 @@ class RunEngine::Run {
   int block_ = 0, block_tries_ = 0;
   int step_tries_ = 0;  ///< of a step outside any block
   std::size_t points_ = 0, block_points_ = 0;
+  Waits* waits_ = nullptr;
+  bool record_given_up_ = false;  ///< it has been waited for long enough
+};
+
+class RunEngine::Run::Waits {
+ public:
+  Waits(Run& run, Seconds at_most) : run_(run), at_most_(at_most), since_(now()) {
+    run_.waits_ = this;
+  }
+  Waits(const Waits&) = delete;
+  Waits& operator=(const Waits&) = delete;
+  ~Waits() { run_.waits_ = nullptr; }
+  Seconds lasted() const { return Seconds{drivers::to_seconds(now() - since_)}; }
+  Seconds at_most() const { return at_most_; }
+  bool too_long() const { return lasted() > at_most_; }
+
+ private:
+  drivers::Clock::Instant now() const { return run_.engine_.clock_.now(); }
+  Run& run_;
+  Seconds at_most_;
+  drivers::Clock::Instant since_;
 };
 
 }  // namespace fogbench::procedures

@@ -72,20 +72,19 @@ Status RunEngine::Run::begin_again(const std::string& reason) {
 }
 
 Status RunEngine::Run::await_return(const std::string& reason) {
-  const auto begun = engine_.clock_.now();
   auto noted = watch_.event("warning", reason + "; coils to 0 A until it is back");
   if (!noted) return noted;
   const std::string interrupted = std::exchange(says_, "waiting for an instrument: " + reason);
+  const Waits waits(*this, engine_.config_.limits.absence_maximum);
   for (;;) {
     const auto off = session_.switch_off();
     // Every reading must have come since: a tick reads all of them.
     const auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
     if (!ticked) return ticked;
-    const Seconds waited{to_seconds(engine_.clock_.now() - begun)};
     if (off && watch_.new_row() != nullptr && watch_.all_answer()) {
       noted = watch_.event("info", fmt::format("all instruments answer after {:.1f} s, the coils "
                                                "read back 0 A",
-                                               waited.count()));
+                                               waits.lasted().count()));
       if (!noted) return noted;
       // A block sets its own currents.
       const auto restored = session_.restore(plan_.steps[step_].block == 0);
@@ -94,29 +93,27 @@ Status RunEngine::Run::await_return(const std::string& reason) {
         return restored;
       }
     }
-    if (waited > engine_.config_.limits.absence_maximum) {
+    if (waits.too_long()) {
       return Error{ErrorCode::kDevice,
-                   fmt::format("still not back after {}: {}",
-                               duration_text(engine_.config_.limits.absence_maximum),
+                   fmt::format("still not back after {}: {}", duration_text(waits.at_most()),
                                off ? reason : off.error().message)};
     }
   }
 }
 
 Status RunEngine::Run::await_record(const Error& fault) {
-  const auto begun = engine_.clock_.now();
   const std::string interrupted = std::exchange(says_, "waiting for the run log: " + fault.message);
+  const Waits waits(*this, engine_.config_.limits.record_wait_maximum);
   watch_.keep_from_record(true);
   for (;;) {
     const auto off = session_.switch_off();
     const auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
     if (!ticked && ticked.error().code != ErrorCode::kUnplugged) return ticked;
-    const Seconds waited{to_seconds(engine_.clock_.now() - begun)};
     if (off && ticked) {
       const auto noted = engine_.recorder_.event(
           watch_.now_s(), "warning",
           fmt::format("{}; nothing was recorded for {:.1f} s, with the coils at 0 A", fault.message,
-                      waited.count()),
+                      waits.lasted().count()),
           {});
       if (noted) {
         watch_.keep_from_record(false);
@@ -128,11 +125,10 @@ Status RunEngine::Run::await_record(const Error& fault) {
         watch_.keep_from_record(true);
       }
     }
-    if (waited > engine_.config_.limits.absence_maximum) {
-      return Error{
-          ErrorCode::kDevice,
-          fmt::format("the run log could not be written for {}: {}",
-                      duration_text(engine_.config_.limits.absence_maximum), fault.message)};
+    if (waits.too_long()) {
+      record_given_up_ = true;
+      return Error{ErrorCode::kDevice, fmt::format("the run log could not be written for {}: {}",
+                                                   duration_text(waits.at_most()), fault.message)};
     }
   }
 }

@@ -23,6 +23,7 @@ struct Continuation {
   std::int64_t run = 0;    ///< the one that is taken up
   std::string first_step;  ///< path of the first step that is left of it
   std::vector<Repeated> repeated;
+  std::size_t points = 0;  ///< that are measured already, and not anew
   std::string says;  ///< for the record
   std::string data_json;
 };

@@ -9,6 +9,7 @@
 #include "drivers/safe_state.hpp"
 #include "procedures/engine_run.hpp"
 #include "procedures/estimate.hpp"
+#include "procedures/planned_points.hpp"
 #include "procedures/run_state.hpp"
 
 namespace fogbench::procedures {
@@ -36,6 +37,11 @@ Status RunEngine::Run::execute_steps() {
       if (advanced) advanced = begin_again("the run log could not be written");
     }
     if (!advanced) return advanced;
+  }
+  if (points_ + points_before_ == 0 && measures(plan_)) {
+    return Error{ErrorCode::kStale,
+                 "all steps are done and nothing was measured: every average was void, or too long "
+                 "for its step"};
   }
   return {};
 }
@@ -116,9 +122,17 @@ void RunEngine::Run::enter(RunEvent event) {
 void RunEngine::Run::report(const std::string& says) const {
   if (!engine_.progress_) return;
   const auto now = engine_.clock_.now();
-  engine_.progress_({engine_.state_, step_, plan_.steps.size(), says,
-                     Seconds{to_seconds(now - started_)},
-                     remaining_.remaining(step_, Seconds{to_seconds(now - step_started_)})});
+  const Seconds elapsed{to_seconds(now - started_)};
+  Progress progress{engine_.state_,
+                    step_,
+                    plan_.steps.size(),
+                    says,
+                    Seconds{watch_.time_s(started_)},
+                    elapsed,
+                    remaining_.remaining(step_, Seconds{to_seconds(now - step_started_)}),
+                    {}};
+  if (waits_ != nullptr) progress.waiting = {waits_->lasted(), waits_->at_most()};
+  engine_.progress_(progress);
 }
 
 void RunEngine::Run::try_to_report(const std::string& says) const {
@@ -152,12 +166,14 @@ Result<RunEnd> RunEngine::Run::finish(const Status& outcome) {
           : (end.outcome == RunOutcome::kAborted ? RunEvent::kSafeAborted : RunEvent::kSafeFailed));
   auto recorded = engine_.recorder_.end_run(end);
   // The bench is safe: what remains is to say so.
-  const auto begun = engine_.clock_.now();
-  const auto patience = drivers::from_seconds(engine_.config_.limits.absence_maximum.count());
-  while (!recorded && engine_.waits_for_record_ && !engine_.abort_requested_ &&
-         engine_.clock_.now() - begun < patience) {
-    engine_.clock_.sleep_for(BenchWatch::kPeriod);
-    recorded = engine_.recorder_.end_run(end);
+  if (!recorded && engine_.waits_for_record_ && !record_given_up_) {
+    const Waits waits(*this, engine_.config_.limits.record_wait_maximum);
+    while (!recorded && !engine_.abort_requested_ && !waits.too_long()) {
+      try_to_report(
+          fmt::format("{}; waiting for the run log: {}", end.reason, recorded.error().message));
+      engine_.clock_.sleep_for(BenchWatch::kPeriod);
+      recorded = engine_.recorder_.end_run(end);
+    }
   }
   try_to_report(end.reason);
   if (!outcome && outcome.error().code == ErrorCode::kStore) {
@@ -219,10 +235,7 @@ Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {
   // A request is for this run only, however it ends.
   struct Forget {
     RunEngine& engine;
-    ~Forget() {
-      engine.abort_requested_ = false;
-      engine.pause_requested_ = false;
-    }
+    ~Forget() { engine.withdraw_requests(); }
   } const forget{*this};
   const auto instruments = identify_instruments(header.gyro_serial_number);
   if (!instruments) return not_begun(instruments.error());
@@ -230,7 +243,7 @@ Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {
   if (!number) return not_begun(number.error());
   state_ = *running;
 
-  Run run(*this, plan);
+  Run run(*this, plan, header.continues ? header.continues->points : 0);
   const auto end = run.finish(run.execute());
   if (!end) return end.error();
   return RunSummary{*number, *end, run.points()};

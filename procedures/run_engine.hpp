@@ -15,6 +15,7 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,8 +37,14 @@ struct Progress {
   std::size_t step = 0;  ///< index into the plan
   std::size_t steps = 0;
   std::string says;
-  Seconds elapsed{0.0};    ///< on the bench's clock
+  Seconds started{0.0};    ///< when the run began, since the gyro's power-on as the record's times
+  Seconds elapsed{0.0};    ///< since then, on the bench's clock
   Seconds remaining{0.0};  ///< the plan's estimate, corrected as steps end
+  /// For an instrument, or for the run log: the run fails when it has lasted too long.
+  struct Waiting {
+    Seconds lasted{0.0}, at_most{0.0};
+  };
+  std::optional<Waiting> waiting;
 };
 
 struct RunSummary {
@@ -61,7 +68,7 @@ class RunEngine {
   void on_point(std::function<void(const Point&)> observer) { point_ = std::move(observer); }
 
   /// A record that cannot be written (a full disk, another program's lock) is waited for as an
-  /// instrument is: coils at 0 A, at most for the bench's absence_maximum, then the step or its
+  /// instrument is: coils at 0 A, at most for the bench's record_wait_maximum, then the step or its
   /// block begins anew. Without this it ends the run: on a virtual clock nobody makes room in time.
   void wait_for_record() { waits_for_record_ = true; }
 
@@ -89,6 +96,8 @@ class RunEngine {
   void request_abort() { abort_requested_ = true; }
   void request_pause() { pause_requested_ = true; }
   void request_resume() { pause_requested_ = false; }
+  /// Nothing is asked for any more.
+  void withdraw_requests() { abort_requested_ = pause_requested_ = false; }
 
  private:
   class Run;

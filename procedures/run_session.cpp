@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "procedures/estimate.hpp"
+#include "procedures/planned_points.hpp"
 #include "procedures/settle_detector.hpp"
 #include "procedures/transients.hpp"
 
@@ -127,8 +128,17 @@ Result<StepResult> RunSession::act(const Wait& step) {
                                [this](const Point& p) { return record(p); });
   const auto deadline = std::max(watch_.now() + from_seconds(step.duration.count()),
                                  watch_.power_on() + from_seconds(step.operating_time.count()));
-  while (watch_.now() < deadline) {
-    const auto ticked = tick(deadline);
+  const Seconds wait{drivers::to_seconds(deadline - watch_.now())};
+  const std::size_t due = step.segment.empty() ? 0 : windows_in(wait, step.window);
+  // The first average begins with the first reading, so that the last one ends a moment after the
+  // wait. One that a gap has put off is not waited for.
+  const auto goes_on = [&] {
+    return watch_.now() < deadline || (transients.complete() < due &&
+                                       transients.next_end() < deadline + 2 * BenchWatch::kPeriod);
+  };
+  while (goes_on()) {
+    const auto now = watch_.now();
+    const auto ticked = tick(now < deadline ? deadline : now + std::chrono::milliseconds{20});
     if (!ticked) return ticked.error();
     const auto recorded = transients.take();
     if (!recorded) return recorded.error();

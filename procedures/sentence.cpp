@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "procedures/estimate.hpp"
+#include "procedures/planned_points.hpp"
 
 namespace fogbench::procedures {
 namespace {
@@ -40,7 +41,13 @@ std::string say(const SettleTemperature& s) {
 }
 std::string say(const Wait& s) {
   const std::string tail = recording(s.segment, s.window);
-  if (s.operating_time.count() <= 0) return "wait for " + duration_text(s.duration) + tail;
+  if (s.operating_time.count() <= 0) {
+    const std::size_t points = windows_in(s.duration, s.window);
+    return fmt::format("wait for {}{}{}", duration_text(s.duration), tail,
+                       tail.empty()  ? ""
+                       : points == 1 ? ": 1 point"
+                                     : fmt::format(": {} points", points));
+  }
   const std::string until =
       fmt::format("wait until {} of operation", duration_text(s.operating_time));
   if (s.duration.count() <= 0) return until + tail;

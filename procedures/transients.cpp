@@ -19,6 +19,7 @@ Status TransientRecorder::take() {
   while (windows_.back().complete()) {
     const std::string reason = windows_.back().void_reason();
     if (reason.empty()) {
+      ++complete_;
       begin(windows_.back().end());
     } else {
       windows_.pop_back();

@@ -29,6 +29,10 @@ class TransientRecorder {
   /// Takes what the watch's last tick brought. A window with a gap is left out, with an event, and
   /// a new one starts after it.
   Status take();
+  /// Windows that have all their frames, and when the one under way will have them.
+  std::size_t complete() const { return complete_; }
+  /// Precondition: take() has been called, and a segment is recorded.
+  drivers::Clock::Instant next_end() const { return windows_.back().end_time(); }
   /// Records the windows that have all their frames but still wait for readings after their end.
   Status finish();
 
@@ -42,6 +46,7 @@ class TransientRecorder {
   std::string segment_;
   config::Seconds length_;
   std::function<Status(const Point&)> record_;
+  std::size_t complete_ = 0;
   std::deque<MeasurementWindow> windows_;  ///< oldest first; only the last lacks frames
 };
 

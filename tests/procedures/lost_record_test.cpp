@@ -88,7 +88,8 @@ TEST(LostRecord, MeanwhileTheCoilsCarryNothingAndTheHeatIsHeld) {
 
 TEST(LostRecord, ThatNeverComesBackEndsTheRunInTheSafeState) {
   Rig rig;
-  rig.config.limits.absence_maximum = Seconds{120.0};
+  rig.config.limits.record_wait_maximum = Seconds{120.0};
+  rig.config.limits.absence_maximum = Seconds{86400.0};
   rig.engine.wait_for_record();
   const FullDisk disk(rig, "point", 2, 1e9);
   const auto summary =
@@ -97,7 +98,40 @@ TEST(LostRecord, ThatNeverComesBackEndsTheRunInTheSafeState) {
   EXPECT_EQ(summary.error().code, ErrorCode::kStore);
   EXPECT_EQ(rig.plant.current_a[0], 0.0);
   EXPECT_EQ(rig.plant.current_a[1], 0.0);
-  EXPECT_LT(drivers::to_seconds(rig.plant.clock.now().time_since_epoch()), 600.0);
+  EXPECT_LT(drivers::to_seconds(rig.plant.clock.now().time_since_epoch()), 200.0)
+      << "waited for once, not again for its end";
+}
+
+TEST(LostRecord, IsWaitedForAFactorysNightUnlessTheBenchSaysOtherwise) {
+  EXPECT_EQ(config::BenchLimits{}.record_wait_maximum, Seconds{12 * 3600.0});
+  Rig rig;
+  rig.config.limits.absence_maximum = Seconds{5.0};
+  rig.config.limits.record_wait_maximum = Seconds{600.0};
+  rig.engine.wait_for_record();
+  const FullDisk disk(rig, "point", 2, 300.0);
+  std::vector<double> lasted_s;
+  rig.engine.on_progress([&](const Progress& now) {
+    if (!now.waiting) return;
+    lasted_s.push_back(now.waiting->lasted.count());
+    EXPECT_EQ(now.waiting->at_most, Seconds{600.0});
+  });
+  const auto summary = rig.summary_of({compensate(), average(), average()});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted) << summary.end.reason;
+  ASSERT_GT(lasted_s.size(), 100U);
+  EXPECT_TRUE(std::is_sorted(lasted_s.begin(), lasted_s.end()));
+  EXPECT_NEAR(lasted_s.back(), 300.0, 5.0);
+}
+
+TEST(LostRecord, AnEndThatCannotBeRecordedIsWaitedForAndTold) {
+  Rig rig;
+  rig.engine.wait_for_record();
+  const FullDisk disk(rig, "end_run", 1, 200.0);
+  std::size_t told = 0;
+  rig.engine.on_progress([&](const Progress& now) { told += now.waiting ? 1 : 0; });
+  const auto summary = rig.summary_of({average()});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted);
+  EXPECT_GT(told, 100U);
+  EXPECT_EQ(rig.log.ends.size(), 1U);
 }
 
 TEST(LostRecord, AnAbortIsTakenWhileItWaits) {

@@ -108,6 +108,36 @@ TEST(RunEngine, SettlesToTheRoomWithTheHeatersOff) {
   EXPECT_NEAR(rig.plant.carrier_c, 21.0, 0.2);
 }
 
+TEST(RunEngine, AWaitOfSoManyWindowsGivesSoManyPoints) {
+  struct Case {
+    double wait_s, window_s;
+    std::size_t points;
+  };
+  for (const Case& c : {Case{30, 30, 1}, Case{60, 30, 2}, Case{180, 60, 3}, Case{200, 60, 3},
+                        Case{3, 1, 3}, Case{119, 60, 1}}) {
+    Rig rig;
+    const auto summary = rig.summary_of({step(config::Wait{c.wait_s, 0.0, "static", c.window_s})});
+    EXPECT_EQ(rig.log.points.size(), c.points) << c.wait_s << " s of " << c.window_s;
+    EXPECT_EQ(summary.points, c.points);
+    EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted) << summary.end.reason;
+    const double lasted_s = drivers::to_seconds(rig.plant.clock.now().time_since_epoch());
+    EXPECT_LT(lasted_s, c.wait_s + 5.0) << "no longer than it takes";
+  }
+}
+
+TEST(RunEngine, ARunThatWasToMeasureAndHasNoPointHasFailed) {
+  Rig rig;
+  const auto summary = rig.summary_of({step(config::Wait{30.0, 0.0, "static", 60.0})});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kFailed);
+  EXPECT_THAT(summary.end.reason, testing::HasSubstr("nothing was measured"));
+  EXPECT_TRUE(summary.end.safe_state_reached);
+  EXPECT_EQ(rig.log.ends.back().outcome, RunOutcome::kFailed);
+
+  Rig idle;
+  EXPECT_EQ(idle.summary_of({wait(30.0)}).end.outcome, RunOutcome::kCompleted)
+      << "it was not to measure";
+}
+
 TEST(RunEngine, WaitsForOperatingTimeSincePowerOn) {
   Rig rig;
   rig.summary_of({wait(30.0), step(config::Wait{0.0, 100.0, "", 60.0})});
@@ -289,7 +319,7 @@ TEST(RunEngine, RecordsAPointBeforeAnyObserverSeesIt) {
     EXPECT_EQ(rig.log.points.back().time_s, p.time_s);
   });
   rig.summary_of({average(), average(), wait(20.0, "static")});
-  EXPECT_EQ(seen, 2U + 3U);
+  EXPECT_EQ(seen, 2U + 4U);
 
   Rig full;
   full.log.fails = [](const std::string& call) { return call == "point"; };
