@@ -54,8 +54,8 @@ Result<ExitStatus> run_add(const AddOptions& options) {
         {{"file", options.output}, {"added", options.effects}, {"terms", model->terms.size()}});
     return ExitStatus::kDone;
   }
-  fmt::print("{}: {} terms, with {} added\nNext: fogbench fit DATA --model {} -o FITTED.json\n",
-             options.output, model->terms.size(), fmt::join(options.effects, ", "), options.output);
+  fmt::print("{}: {} terms, with {} added; compare, fit and diagnose take it with --model\n",
+             options.output, model->terms.size(), fmt::join(options.effects, ", "));
   return ExitStatus::kDone;
 }
 

@@ -11,6 +11,7 @@
 #include "cli/challenge_file.hpp"
 #include "cli/command.hpp"
 #include "cli/output.hpp"
+#include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
 #include "daemon/export.hpp"
 #include "daemon/file_hash.hpp"
@@ -160,9 +161,11 @@ Result<ExitStatus> run_challenge(const ChallengeOptions& options) {
   fmt::print("  {:<17} the model to start from: {}\n", kModelFile,
              fmt::join(effects_of(draw.model), ", "));
   fmt::print("  {:<17} what is hidden\n\n", kSealedFile);
-  fmt::print("Next: fogbench compare {} --model {}\n", data, model);
-  fmt::print("      fogbench diagnose {} --model {}\n", data, model);
-  fmt::print("      fogbench reveal {} --answer EFFECT   (or: --answer nothing)\n", path.string());
+  const std::string named = fmt::format("{} --model {}", shell_word(data), shell_word(model));
+  fmt::print("Next: fogbench compare {}\n", named);
+  fmt::print("      fogbench diagnose {}\n", named);
+  fmt::print("When you know what hides: fogbench reveal {} --answer EFFECT, or --answer nothing\n",
+             shell_word(path.string()));
   return ExitStatus::kDone;
 }
 

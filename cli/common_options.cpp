@@ -4,7 +4,12 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <system_error>
 
+#include "cli/control_client.hpp"
+#include "cli/output.hpp"
+#include "cli/shell_word.hpp"
 #include "daemon/store.hpp"
 
 namespace fogbench::cli {
@@ -20,6 +25,20 @@ std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
+Result<std::filesystem::path> unnamed_store() {
+  const auto standard = daemon::default_store();
+  const std::string served = served_store();
+  if (served.empty() || (standard && *standard == served)) return standard;
+  std::error_code error;
+  if (standard && std::filesystem::exists(*standard, error)) {
+    print_note(fmt::format("this is {}; the fogbenchd that serves here writes --store {}",
+                           standard->string(), shell_word(served)));
+    return standard;
+  }
+  print_note(fmt::format("this is {}, which the fogbenchd that serves here writes", served));
+  return std::filesystem::path(served);
+}
+
 }  // namespace
 
 void add_store_option(CLI::App& command, std::string& store) {
@@ -32,21 +51,31 @@ Result<std::filesystem::path> store_path(const std::string& store) {
   return std::filesystem::path(store);
 }
 
+Result<std::filesystem::path> store_to_read(const std::string& store) {
+  const bool named = !store.empty() || std::getenv("FOGBENCH_STORE") != nullptr;  // NOLINT
+  if (named) return store_path(store);
+  static const auto kFound = unnamed_store();  // the note is one, however often a command reads
+  return kFound;
+}
+
 std::string store_argument(const std::string& store) {
-  return store.empty() ? "" : " --store " + store;
+  return store.empty() ? "" : " --store " + shell_word(store);
+}
+
+std::string wrong_run_number(const std::string& text) {
+  // strtoll, which reads the number, would take any that is too large for the largest.
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || value < 0) {
+    return "the number of a run was expected, not " + text;
+  }
+  return value > 0 ? "" : "there is no run 0: they are numbered from 1";
 }
 
 void add_run_option(CLI::App& command, std::int64_t& run) {
-  // strtoll, which reads the number, would take any that is too large for the largest.
-  const auto number = [](const std::string& text) -> std::string {
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = error == std::errc{} && end == text.data() + text.size();
-    return whole && value > 0 ? "" : "the number of a run was expected, not " + text;
-  };
   command.add_option("RUN", run, "The run's number (fogbench runs lists them)")
       ->required()
-      ->check(number);
+      ->check(wrong_run_number);
 }
 
 void add_procedure_options(CLI::App& command, ProcedureOptions& options) {

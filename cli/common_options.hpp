@@ -15,12 +15,17 @@ namespace fogbench::cli {
 
 /// --store FILE.
 void add_store_option(CLI::App& command, std::string& store);
-/// The store as named, or the default one.
+/// The store as named, or the default one: where a command writes.
 Result<std::filesystem::path> store_path(const std::string& store);
+/// The store as named, else the default one if it is there, else that of the daemon that serves
+/// here: where a command reads. Says so when a daemon writes elsewhere.
+Result<std::filesystem::path> store_to_read(const std::string& store);
 
 /// " --store FILE" for a command that is proposed next; empty when the default one serves.
 std::string store_argument(const std::string& store);
 
+/// Why a text is no run's number; empty when it is one.
+std::string wrong_run_number(const std::string& text);
 /// RUN, the number of one run.
 void add_run_option(CLI::App& command, std::int64_t& run);
 

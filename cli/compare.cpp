@@ -11,6 +11,7 @@
 #include "cli/command.hpp"
 #include "cli/load_table.hpp"
 #include "cli/output.hpp"
+#include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
@@ -33,21 +34,15 @@ struct CompareOptions {
   bool json = false;
 };
 
-/// What to type next.
+/// What to type next, as a shell takes it.
 std::string next_step(const model::Comparison& c, const CompareOptions& options) {
-  const std::string& data = options.data.data.front();
-  if (c.as_is) {
-    return fmt::format("fogbench compare {} --model {}   (fits the coefficients first)", data,
-                       options.model);
-  }
+  const std::string named =
+      fmt::format("{} --model {}", data_arguments(options.data), shell_word(options.model));
+  if (c.as_is) return fmt::format("fogbench compare {}   # fits the coefficients first", named);
   if (c.p_adequate < model::kAdequate) {
-    return fmt::format(
-        "fogbench add EFFECT --model {} -o wider.json && "
-        "fogbench compare {} --model wider.json   "
-        "(fogbench effects lists what may be missing)",
-        options.model, data);
+    return fmt::format("fogbench diagnose {}   # says which effect is missing", named);
   }
-  return fmt::format("fogbench fit {} --model {} -o fitted.json", data, options.model);
+  return fmt::format("fogbench fit {} -o fitted.json", named);
 }
 
 /// The worst ranges; those that the fit leaves no freedom are not worth a line.

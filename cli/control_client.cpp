@@ -12,6 +12,7 @@
 #include <system_error>
 #include <variant>
 
+#include "cli/shell_word.hpp"
 #include "daemon/control_socket.hpp"
 #include "daemon/json_rpc.hpp"
 
@@ -23,9 +24,6 @@ using daemon::RpcCode;
 using daemon::RpcError;
 using daemon::RpcNotification;
 using nlohmann::json;
-
-/// The daemon answers within milliseconds; planning a long procedure takes the longest.
-constexpr int kPatienceMs = 30'000;
 
 Error to_error(const RpcError& refused) {
   switch (refused.code) {
@@ -46,11 +44,23 @@ void add_socket_option(CLI::App& command, std::string& socket) {
                      "daemon's, else the service's)");
 }
 
-Result<std::unique_ptr<ControlClient>> ControlClient::connect(const std::string& socket) {
+std::string socket_argument(const std::string& socket) {
+  return socket.empty() ? "" : " --socket " + shell_word(socket);
+}
+
+std::string served_store() {
+  const auto client = ControlClient::connect({}, std::chrono::seconds{1});
+  if (!client) return "";
+  const auto hello = (*client)->call("hello");
+  return hello && hello->is_object() ? hello->value("store", "") : "";
+}
+
+Result<std::unique_ptr<ControlClient>> ControlClient::connect(const std::string& socket,
+                                                              std::chrono::milliseconds patience) {
   const std::string path = socket.empty() ? daemon::socket_to_ask().string() : socket;
   if (const Status ok = daemon::check_socket_path(path); !ok) return ok.error();
   std::unique_ptr<ControlClient> client(
-      new ControlClient(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0), path));
+      new ControlClient(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0), path, patience));
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
@@ -110,7 +120,7 @@ Result<json> ControlClient::call(const std::string& method, const nlohmann::orde
   // A daemon that turns this client away has said why before it closed: that is read below.
   (void)send(socket_.get(), request.data(), request.size(), MSG_NOSIGNAL);
   while (true) {
-    const auto line = next_line(kPatienceMs);
+    const auto line = next_line(static_cast<int>(patience_.count()));
     if (!line) return line.error();
     auto message = daemon::parse_answer(*line);
     if (!message) return message.error();

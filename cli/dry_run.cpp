@@ -84,6 +84,7 @@ Status print_results(const std::filesystem::path& store, const procedures::Plan&
   std::string named = store_argument(options.store);
   fmt::print("{}\nRun {} is in {}\n", *results, summary.run, store.string());
   fmt::print("Next: fogbench show {0}{1}\n", summary.run, named);
+  if (summary.points == 0) return {};
   if (summary.end.outcome != RunOutcome::kCompleted) named += " --unfinished";
   fmt::print("      fogbench export {0}{1} -o run-{0}.csv\n", summary.run, named);
   fmt::print("      fogbench fit {0}{1} --model {2} -o run-{0}-{2}.json\n", summary.run, named,

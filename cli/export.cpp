@@ -18,7 +18,7 @@ struct ExportOptions {
 };
 
 Result<ExitStatus> run_export(const ExportOptions& options) {
-  const auto path = store_path(options.store);
+  const auto path = store_to_read(options.store);
   if (!path) return path.error();
   auto reader = daemon::RunLogReader::open(*path);
   if (!reader) return reader.error();

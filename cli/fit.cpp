@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
-#include "cli/common_options.hpp"
 #include "cli/fit_record.hpp"
 #include "cli/load_table.hpp"
 #include "cli/output.hpp"
+#include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
@@ -76,8 +76,8 @@ void print_result(const model::FitResult& result, const FitCommandOptions& optio
     fmt::print("correlation {:+.3f}: {} with {}\n", c.value, c.a, c.b);
   }
   for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
-  fmt::print("\nWritten to {}\nNext: fogbench compare {}{} --model {}\n", options.output,
-             options.data.data.front(), store_argument(options.data.store), options.output);
+  fmt::print("\nWritten to {}\nNext: fogbench compare {} --model {}\n", options.output,
+             data_arguments(options.data), shell_word(options.output));
 }
 
 nlohmann::json to_json(const model::FitResult& result) {

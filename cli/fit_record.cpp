@@ -24,7 +24,7 @@ Result<std::string> hash_of_data(const std::string& name, const DataOptions& dat
     if (!std::filesystem::is_regular_file(name, ignored)) return std::string();
     return daemon::file_sha256(name);
   }
-  const auto path = store_path(stored->store);
+  const auto path = store_to_read(stored->store);
   if (!path) return path.error();
   auto reader = daemon::RunLogReader::open(*path);
   if (!reader) return reader.error();

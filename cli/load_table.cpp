@@ -44,7 +44,7 @@ Result<Renames> parse_renames(const std::vector<std::string>& columns) {
 
 Result<model::Table> load_run(const std::string& store, std::int64_t run, const Renames& renames,
                               bool unfinished) {
-  const auto path = store_path(store);
+  const auto path = store_to_read(store);
   if (!path) return path.error();
   auto reader = daemon::RunLogReader::open(*path);
   if (!reader) return reader.error();
@@ -124,7 +124,7 @@ std::string data_arguments(const DataOptions& options) {
   for (const std::string& column : options.columns) out += " --column " + shell_word(column);
   if (!options.segment.empty()) out += " --segment " + shell_word(options.segment);
   if (options.unfinished) out += " --unfinished";
-  if (!options.store.empty()) out += " --store " + shell_word(options.store);
+  out += store_argument(options.store);
   return out.substr(out.empty() ? 0 : 1);
 }
 

@@ -58,7 +58,7 @@ Result<daemon::Passport> judge_runs(const PassportOptions& options) {
     if (!model) return model.error();
     how.model = std::move(*model);
   }
-  const auto path = store_path(options.store);
+  const auto path = store_to_read(options.store);
   if (!path) return path.error();
   auto reader = daemon::RunLogReader::open(*path);
   if (!reader) return reader.error();

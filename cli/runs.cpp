@@ -29,7 +29,7 @@ nlohmann::ordered_json row_of(const daemon::StoredRun& run) {
 }
 
 Result<ExitStatus> run_runs(const RunsOptions& options) {
-  const auto path = store_path(options.store);
+  const auto path = store_to_read(options.store);
   if (!path) return path.error();
   auto reader = daemon::RunLogReader::open(*path);
   if (!reader) return reader.error();

@@ -17,7 +17,7 @@ struct ShowOptions {
 };
 
 Result<ExitStatus> run_show(const ShowOptions& options) {
-  const auto path = store_path(options.store);
+  const auto path = store_to_read(options.store);
   if (!path) return path.error();
   auto reader = daemon::RunLogReader::open(*path);
   if (!reader) return reader.error();

@@ -101,7 +101,7 @@ void print_served(const ServedBench& bench, const SimulateOptions& options, cons
                instrument.name);
   }
   if (options.write_bench.empty()) {
-    fmt::print("Next: again with --write-bench FILE, which fogbenchd --bench FILE takes.\n");
+    fmt::print("--write-bench FILE writes the bench that fogbenchd --bench FILE takes.\n");
   } else {
     fmt::print("Next: fogbenchd --bench {} coil-sweep\n", shell_word(options.write_bench));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/shell_word.hpp"
 #include "config/units.hpp"
 #include "procedures/estimate.hpp"
 
@@ -38,17 +39,33 @@ std::string points_text(const json& points) {
   return plain(points) + (points == 1 ? " point" : " points");
 }
 
-/// "temperature working 1  21.01 degC", two to a line. The units of these values have no '_'.
-std::string values_text(const json& values) {
+/// "45 s old"
+std::string age_text(const json& age_s) {
+  return span_text(age_s) + " old";
+}
+
+/// "temperature working 1  21.01 degC", two to a line; what is missing now as it was last. The
+/// units of these values have no '_'.
+std::string values_text(const json& status) {
+  // They come about once a second.
+  constexpr double kFreshS = 3.0;
+  const json& values = at(status, "values");
   std::string lines, left;
+  if (real(at(status, "values_age_s")) > kFreshS) {
+    lines = "read last, " + age_text(at(status, "values_age_s")) + ":\n";
+  }
   for (const auto& [key, value] : values.items()) {
     if (key == "time_s") continue;
     const std::string_view unit = config::unit_of(key);
     std::string name = unit.empty() ? key : key.substr(0, key.rfind('_'));
     std::replace(name.begin(), name.end(), '_', ' ');
+    const json& old = at(at(status, "old_values"), key.c_str());
+    const json& known = value.is_null() && old.is_object() ? at(old, "value") : value;
     const std::string shown =
-        value.is_number() ? fmt::format("{:.3f}", value.get<double>()) : plain(value);
-    const std::string cell = fmt::format("  {:<22}{:>10} {}", name, shown, unit);
+        known.is_number() ? fmt::format("{:.3f}", known.get<double>()) : plain(known);
+    const std::string age =
+        value.is_null() && old.is_object() ? ", " + age_text(at(old, "age_s")) : "";
+    const std::string cell = fmt::format("  {:<22}{:>10} {}{}", name, shown, unit, age);
     if (left.empty()) {
       left = cell;
     } else {
@@ -57,6 +74,12 @@ std::string values_text(const json& values) {
     }
   }
   return left.empty() ? lines : lines + left + '\n';
+}
+
+/// Why the queue is held, and how it goes on; empty when it is not.
+std::string held_text(const json& queue, const char* before) {
+  if (at(queue, "held") != true) return "";
+  return fmt::format("{}{} (fogbench resume goes on)", before, plain(at(queue, "because")));
 }
 
 }  // namespace
@@ -75,7 +98,17 @@ std::string status_text(const json& status) {
     if (at(run, "abort_requested") == true) {
       out += "an abort has been asked for\n";
     } else if (at(run, "pause_requested") == true && at(status, "state") != "paused") {
-      out += "a pause has been asked for: before the next divisible step\n";
+      out += at(run, "pauses_after") == true
+                 ? "a pause has been asked for: no step is left to hold before, the queue is held "
+                   "after the run\n"
+                 : "a pause has been asked for: before the next divisible step\n";
+    }
+    const json& waiting = at(run, "waiting");
+    if (waiting.is_object()) {
+      out += fmt::format(
+          "it has waited for {}; the run fails in {}\n", span_text(at(waiting, "for_s")),
+          span_text(
+              json(std::max(0.0, real(at(waiting, "at_most_s")) - real(at(waiting, "for_s"))))));
     }
   } else {
     const bool waits = at(status, "state") == "waiting";
@@ -84,7 +117,7 @@ std::string status_text(const json& status) {
     const json& last = at(status, "last_run");
     if (last.is_object()) {
       out += "last: " + ended_text(last) + "\n";
-      if (at(last, "outcome") != "completed" && at(last, "run").is_number()) {
+      if (at(last, "resumable") == true) {
         out += fmt::format("(fogbench resume {} takes it up)\n", plain(at(last, "run")));
       }
     }
@@ -92,11 +125,19 @@ std::string status_text(const json& status) {
   const json& interrupted = at(status, "interrupted");
   if (interrupted.is_object()) {
     const std::string number = plain(at(interrupted, "run"));
-    out += fmt::format(
-        "run {}, {}{}, was interrupted after {}: fogbench resume {} takes it up,\n"
-        "fogbench resume {} --discard gives it up\n",
-        number, plain(at(interrupted, "procedure")), gyro_text(interrupted),
-        points_text(at(interrupted, "points")), number, number);
+    out += fmt::format("run {}, {}{}, was interrupted after {}", number,
+                       plain(at(interrupted, "procedure")), gyro_text(interrupted),
+                       points_text(at(interrupted, "points")));
+    const json& obstacle = at(interrupted, "obstacle");
+    out += obstacle.is_string()
+               ? fmt::format(
+                     "\n{}\nfogbench resume {} --discard gives it up, fogbench run {} "
+                     "begins it anew\n",
+                     plain(obstacle), number, shell_word(plain(at(interrupted, "procedure"))))
+               : fmt::format(
+                     ": fogbench resume {} takes it up,\n"
+                     "fogbench resume {} --discard gives it up\n",
+                     number, number);
   }
   out += queue_text(status);
   const json& prompt = at(status, "prompt");
@@ -105,18 +146,22 @@ std::string status_text(const json& status) {
                        plain(at(prompt, "text")));
   }
   if (!run.is_object()) return out;
-  const json& values = at(status, "values");
-  if (values.is_object()) out += values_text(values);
+  if (at(status, "values").is_object()) out += values_text(status);
+  // One clock: the record's times are since the gyro's power-on, a person's since the run's start.
+  const auto since_start = [&run](const json& time_s) {
+    return span_text(json(std::max(0.0, real(time_s) - real(at(run, "started_s")))));
+  };
   const json& point = at(status, "point");
   if (point.is_object()) {
-    out += fmt::format("last point: {} at {:.1f} s, {:.4f} deg/h\n", plain(at(point, "segment")),
-                       real(at(point, "time_s")), real(at(point, "rate_deg_per_h")));
+    out += fmt::format("last point: {}, {} after the start, {:.4f} deg/h\n",
+                       plain(at(point, "segment")), since_start(at(point, "time_s")),
+                       real(at(point, "rate_deg_per_h")));
   }
   const json& events = at(status, "events");
   constexpr std::size_t kShown = 5;
   const std::size_t first = events.size() > kShown ? events.size() - kShown : 0;
   for (std::size_t i = first; events.is_array() && i < events.size(); ++i) {
-    out += fmt::format("{:>9.1f} s  {:<7}  {}\n", real(at(events[i], "time_s")),
+    out += fmt::format("{:>12}  {:<7}  {}\n", since_start(at(events[i], "time_s")),
                        plain(at(events[i], "severity")), plain(at(events[i], "message")));
   }
   return out;
@@ -124,12 +169,11 @@ std::string status_text(const json& status) {
 
 std::string queue_text(const json& status) {
   const json& queue = at(status, "queue");
-  if (real(at(queue, "jobs")) == 0) return "";
-  const std::string held =
-      at(queue, "held") == true
-          ? fmt::format(", held: {} (fogbench resume goes on)", plain(at(queue, "because")))
-          : "";
-  return fmt::format("{} in the queue{}\n", plain(at(queue, "jobs")), held);
+  const bool waiting = real(at(queue, "jobs")) > 0, held = at(queue, "held") == true;
+  if (!waiting && !held) return "";
+  return fmt::format("{}{}\n",
+                     waiting ? plain(at(queue, "jobs")) + " in the queue" : "the queue is",
+                     held_text(queue, waiting ? ", held: " : " held: "));
 }
 
 std::string gyro_text(const json& job) {

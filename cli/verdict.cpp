@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
+#include "cli/common_options.hpp"
 #include "cli/output.hpp"
 #include "cli/passport_options.hpp"
 #include "cli/shell_word.hpp"
@@ -86,7 +87,7 @@ void print_text(const daemon::Passport& passport, const VerdictOptions& options)
   same += " --limits " + shell_word(options.passport.limits);
   if (!options.passport.model.empty()) same += " --model " + shell_word(options.passport.model);
   if (options.passport.unfinished) same += " --unfinished";
-  if (!options.passport.store.empty()) same += " --store " + shell_word(options.passport.store);
+  same += store_argument(options.passport.store);
   fmt::print("\nNext: fogbench passport{} -o passport.html\n", same);
 }
 
