@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/command.hpp"
+#include "cli/common_options.hpp"
 #include "cli/control_client.hpp"
 #include "cli/status_text.hpp"
 #include "procedures/estimate.hpp"
@@ -16,14 +17,22 @@ namespace {
 
 struct PauseOptions {
   std::string socket;
+  bool after_run = false;
 };
 
-Result<ExitStatus> ask_daemon(const PauseOptions& options, const char* method, const char* says) {
+Result<ExitStatus> run_pause(const PauseOptions& options) {
   auto client = ControlClient::connect(options.socket);
   if (!client) return client.error();
-  const auto done = (*client)->call(method);
+  const auto done = (*client)->call(options.after_run ? "hold" : "pause");
   if (!done) return done.error();
-  fmt::print("{}\n", says);
+  if (options.after_run) {
+    fmt::print("No run begins until fogbench resume; one that is under way goes on to its end.\n");
+  } else if (done->value("after_run", false)) {
+    fmt::print(
+        "No step is left to hold before: the run goes on to its end, then the queue is held.\n");
+  } else {
+    fmt::print("The run pauses before its next divisible step.\n");
+  }
   return ExitStatus::kDone;
 }
 
@@ -34,9 +43,14 @@ struct ResumeOptions {
 };
 
 Result<ExitStatus> run_resume(const ResumeOptions& options) {
-  if (!options.run) return ask_daemon({options.socket}, "resume", "Resumed.");
   auto client = ControlClient::connect(options.socket);
   if (!client) return client.error();
+  if (!options.run) {
+    const auto resumed = (*client)->call("resume");
+    if (!resumed) return resumed.error();
+    fmt::print("Resumed.\n");
+    return ExitStatus::kDone;
+  }
   const auto done =
       (*client)->call(options.discard ? "discard" : "resume", {{"run", *options.run}});
   if (!done) return done.error();
@@ -44,14 +58,11 @@ Result<ExitStatus> run_resume(const ResumeOptions& options) {
     fmt::print("Run {} is given up; what it measured stays in the run log.\n", *options.run);
     return ExitStatus::kDone;
   }
-  fmt::print("Job {} takes up run {}{}: {} steps, about {}\nNext: fogbench watch\n",
+  fmt::print("Job {} takes up run {}{}: {} steps, about {}\nNext: fogbench watch{}\n",
              done->value("job", 0), *options.run, gyro_text(*done), done->value("steps", 0),
-             procedures::duration_text(config::Seconds{done->value("estimate_s", 0.0)}));
+             procedures::duration_text(config::Seconds{done->value("estimate_s", 0.0)}),
+             socket_argument(options.socket));
   return ExitStatus::kDone;
-}
-
-void declare_socket(CLI::App& command, PauseOptions& options) {
-  add_socket_option(command, options.socket);
 }
 
 }  // namespace
@@ -60,10 +71,15 @@ void add_pause(CLI::App& app, Action& action) {
   add_command<PauseOptions>(
       app, action, "pause", "Hold the daemon's run before its next divisible step",
       "  fogbench pause\n"
-      "The bench keeps its temperature and field meanwhile. A sweep is finished first.",
-      declare_socket, [](const PauseOptions& options) {
-        return ask_daemon(options, "pause", "The run pauses before its next divisible step.");
-      });
+      "  fogbench pause --after-run    this run to its end, and no other\n"
+      "The bench keeps its temperature and field meanwhile. A sweep is finished first; when it is\n"
+      "the last step, the queue is held after the run.",
+      [](CLI::App& command, PauseOptions& options) {
+        command.add_flag("--after-run", options.after_run,
+                         "Let the run go on to its end, and hold the queue then");
+        add_socket_option(command, options.socket);
+      },
+      run_pause);
 }
 
 void add_resume(CLI::App& app, Action& action) {
@@ -79,7 +95,8 @@ void add_resume(CLI::App& app, Action& action) {
       "on record. You confirm with it that the gyro is still in its place.",
       [](CLI::App& command, ResumeOptions& options) {
         CLI::Option* run =
-            command.add_option("RUN", options.run, "The number of a run that was not completed");
+            command.add_option("RUN", options.run, "The number of a run that was not completed")
+                ->check(wrong_run_number);
         command.add_flag("--discard", options.discard, "Give the interrupted run up instead")
             ->needs(run);
         add_socket_option(command, options.socket);

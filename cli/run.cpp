@@ -19,7 +19,7 @@ namespace {
 struct RunOptions {
   std::string procedure, gyro, socket;
   std::vector<std::string> set;
-  bool json = false;
+  bool keep_going = false, json = false;
 };
 
 Result<ExitStatus> run_run(const RunOptions& options) {
@@ -39,17 +39,19 @@ Result<ExitStatus> run_run(const RunOptions& options) {
   if (!client) return client.error();
   nlohmann::ordered_json params{{"procedure", procedure}, {"set", set}};
   if (!options.gyro.empty()) params["gyro"] = options.gyro;
+  if (options.keep_going) params["keep_going"] = true;
   const auto queued = (*client)->call("run", params);
   if (!queued) return queued.error();
   if (options.json) {
     print_json(*queued);
     return ExitStatus::kDone;
   }
-  fmt::print("Job {}, {}{}: {} steps, about {}{}\n", queued->value("job", 0), options.procedure,
+  fmt::print("Job {}, {}{}: {} steps, about {}\n", queued->value("job", 0), options.procedure,
              gyro_text(*queued), queued->value("steps", 0),
-             procedures::duration_text(config::Seconds{queued->value("estimate_s", 0.0)}),
-             queued->value("held", false) ? "; the queue is held (fogbench resume)" : "");
-  fmt::print("Next: fogbench watch\n");
+             procedures::duration_text(config::Seconds{queued->value("estimate_s", 0.0)}));
+  const bool held = queued->value("held", false);
+  if (held) fmt::print("The queue is held: {}\n", queued->value("because", ""));
+  fmt::print("Next: fogbench {}{}\n", held ? "resume" : "watch", socket_argument(options.socket));
   return ExitStatus::kDone;
 }
 
@@ -59,7 +61,8 @@ void add_run(CLI::App& app, Action& action) {
   add_command<RunOptions>(
       app, action, "run", "Queue a procedure on the daemon's bench",
       "  fogbench run acceptance\n"
-      "  fogbench run ./my-sweep.json --set average_s=60 --gyro FOG-42",
+      "  fogbench run ./my-sweep.json --set average_s=60 --gyro FOG-42\n"
+      "  fogbench run coil-sweep --keep-going    though the run before it may fail",
       [](CLI::App& command, RunOptions& options) {
         command
             .add_option("PROCEDURE", options.procedure,
@@ -70,6 +73,8 @@ void add_run(CLI::App& app, Action& action) {
                         "name=value or name=value,value...: a parameter of the procedure")
             ->allow_extra_args(false);
         daemon::add_gyro_option(command, options.gyro, "the daemon's, else the bench file's");
+        command.add_flag("--keep-going", options.keep_going,
+                         "Run it also when the run before it has failed, the bench being safe");
         add_socket_option(command, options.socket);
         command.add_flag("--json", options.json, "One JSON document on stdout");
       },

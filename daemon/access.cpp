@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <grp.h>
 #include <pwd.h>
+#include <sys/fsuid.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -34,6 +37,11 @@ bool look_up(std::vector<char>& buffer, Entry& entry, LookUp look_up_into) {
   return found != nullptr;
 }
 
+/// Of this thread only: the library's function would change all of them.
+bool set_thread_groups(const std::vector<gid_t>& groups) {
+  return syscall(SYS_setgroups, groups.size(), groups.data()) == 0;
+}
+
 }  // namespace
 
 std::string_view name_of(Role role) {
@@ -60,6 +68,48 @@ Result<Credentials> credentials_of(int socket) {
   }
   credentials.groups.push_back(peer.gid);
   return credentials;
+}
+
+Credentials credentials_of_user(uid_t uid) {
+  passwd entry{};
+  std::vector<char> buffer;
+  const bool found =
+      look_up(buffer, entry, [&](passwd* into, char* text, size_t size, passwd** out) {
+        return getpwuid_r(uid, into, text, size, out);
+      });
+  if (!found) return {uid, {}};
+  int count = 64;
+  std::vector<gid_t> groups(static_cast<std::size_t>(count));
+  if (getgrouplist(entry.pw_name, entry.pw_gid, groups.data(), &count) < 0) {
+    groups.resize(static_cast<std::size_t>(count));  // it has said how many there are
+    if (getgrouplist(entry.pw_name, entry.pw_gid, groups.data(), &count) < 0) count = 0;
+  }
+  groups.resize(static_cast<std::size_t>(count));
+  return {uid, std::move(groups)};
+}
+
+BorrowedRights::BorrowedRights(const Credentials& user) {
+  if (geteuid() != 0 || user.uid == 0) return;
+  const int count = getgroups(0, nullptr);
+  groups_.resize(static_cast<std::size_t>(std::max(count, 0)));
+  if (count < 0 || getgroups(count, groups_.data()) != count) {
+    taken_ = false;
+    return;
+  }
+  changed_ = true;
+  // The kernel takes root's powers over files away with the file system's user id.
+  const gid_t nobodys = static_cast<gid_t>(-2);
+  group_ = static_cast<gid_t>(setfsgid(user.groups.empty() ? nobodys : user.groups.back()));
+  taken_ = set_thread_groups(user.groups);
+  setfsuid(user.uid);
+  taken_ = taken_ && static_cast<uid_t>(setfsuid(static_cast<uid_t>(-1))) == user.uid;
+}
+
+BorrowedRights::~BorrowedRights() {
+  if (!changed_) return;
+  setfsuid(geteuid());
+  setfsgid(group_);
+  set_thread_groups(groups_);
 }
 
 Role AccessRules::role_of(const Credentials& peer) const {

@@ -28,6 +28,28 @@ struct Credentials {
 /// into the user database, which may be far away. Errors: kDevice.
 Result<Credentials> credentials_of(int socket);
 
+/// Of a user who is not connected, by the user database: his groups as they are now.
+Credentials credentials_of_user(uid_t uid);
+
+/// While it lives, this thread reads files with no more rights than that user has: a daemon that
+/// runs as root reads nothing for an operator that he may not read himself. The other threads keep
+/// theirs. Without effect for root and for the process's own user, and where the process is not
+/// root: it has no others to take.
+class BorrowedRights {
+ public:
+  explicit BorrowedRights(const Credentials& user);
+  BorrowedRights(const BorrowedRights&) = delete;
+  BorrowedRights& operator=(const BorrowedRights&) = delete;
+  ~BorrowedRights();
+  /// False when the kernel refuses: then nothing may be read for him.
+  bool taken() const { return taken_; }
+
+ private:
+  bool changed_ = false, taken_ = true;
+  gid_t group_ = 0;
+  std::vector<gid_t> groups_;  ///< the thread's own
+};
+
 /// root and the daemon's own user may always act.
 struct AccessRules {
   uid_t owner = 0;

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <variant>
 
 #include "daemon/desk_json.hpp"
@@ -21,6 +23,8 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 using Outcome = std::variant<ordered_json, RpcError>;
+
+constexpr auto kRunExpected = "/params/run: expected a run's number, from 1 on";
 
 RpcError invalid(const std::string& says) {
   return {RpcCode::kInvalidParams, says};
@@ -42,7 +46,16 @@ Outcome done(const RunDesk::Refused& refused) {
 std::optional<std::uint64_t> number_of(const json& params, const char* key) {
   const auto value = params.find(key);
   if (value == params.end() || !value->is_number_unsigned()) return std::nullopt;
-  return value->get<std::uint64_t>();
+  const auto number = value->get<std::uint64_t>();
+  return number > 0 ? std::optional(number) : std::nullopt;
+}
+
+/// The run that the parameters name; null when there can be none of that number.
+std::optional<std::int64_t> run_of(const json& params) {
+  const auto run = number_of(params, "run");
+  constexpr auto kLargest = std::numeric_limits<std::int64_t>::max();
+  if (!run || *run > static_cast<std::uint64_t>(kLargest)) return std::nullopt;
+  return static_cast<std::int64_t>(*run);
 }
 
 Outcome status(RunDesk& desk, const json&) {
@@ -90,7 +103,7 @@ RpcError refusal(const Error& error) {
 
 Outcome enqueue(RunDesk& desk, const Setup& setup, const std::filesystem::path& store, Order order,
                 const Caller& caller) {
-  auto planned = plan_order(order, setup, store);
+  auto planned = plan_order(order, setup, store, {caller.uid, caller.groups});
   if (!planned) return refusal(planned.error());
   const Person by = person_of(
       caller, order.takes_up != 0 ? fmt::format("resume run {}", order.takes_up)
@@ -102,8 +115,17 @@ Outcome enqueue(RunDesk& desk, const Setup& setup, const std::filesystem::path& 
   const auto queued = desk.enqueue(std::move(order), std::move(*planned), by);
   if (const auto* refused = std::get_if<RpcError>(&queued)) return *refused;
   answer["job"] = std::get<std::uint64_t>(queued);
-  answer["held"] = desk.view().held();
+  const DeskView view = desk.view();
+  answer["held"] = view.held();
+  answer["because"] = view.held_because;
   return answer;
+}
+
+/// `name`, which may be left out; null when it is no truth value.
+std::optional<bool> flag_of(const json& params, const char* name) {
+  const auto value = params.find(name);
+  if (value == params.end()) return false;
+  return value->is_boolean() ? std::optional(value->get<bool>()) : std::nullopt;
 }
 
 /// What the parameters of `run` ask for.
@@ -124,6 +146,9 @@ std::variant<Order, RpcError> order_of(const json& params) {
     }
     order.gyro = gyro->get<std::string>();
   }
+  const auto keep_going = flag_of(params, "keep_going");
+  if (!keep_going) return invalid("/params/keep_going: expected true or false");
+  order.keep_going = *keep_going;
   return order;
 }
 
@@ -136,7 +161,7 @@ Outcome discard_run(RunDesk& desk, const std::filesystem::path& store, std::int6
   if (!log) return refusal(log.error());
   const Status given_up = (*log)->give_up(run, "given up by " + by.name);
   if (!given_up) return refusal(given_up.error());
-  desk.withdraw_offer();
+  desk.withdraw_offer(run);
   return ordered_json::object();
 }
 
@@ -157,9 +182,11 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
        Role::kObserver,
        {},
        [](Self& self, const json&, Caller& caller) -> Outcome {
+         std::error_code ignored;
          return ordered_json{{"protocol", kProtocolVersion},
                              {"version", FOGBENCH_VERSION},
                              {"bench", self.setup_.bench.name},
+                             {"store", std::filesystem::absolute(self.store_, ignored).string()},
                              {"user", user_name(caller.uid)},
                              {"role", name_of(caller.role)}};
        }},
@@ -194,7 +221,7 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
        }},
       {"run",
        Role::kOperator,
-       {"procedure", "set", "gyro"},
+       {"procedure", "set", "gyro", "keep_going"},
        [](Self& self, const json& params, Caller& caller) -> Outcome {
          auto order = order_of(params);
          if (const auto* refused = std::get_if<RpcError>(&order)) return *refused;
@@ -210,39 +237,56 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
          const Person by = person_of(caller, fmt::format("remove job {}", *job));
          return done(self.desk_.remove(*job, by));
        }},
+      {"move",
+       Role::kOperator,
+       {"job", "to"},
+       [](Self& self, const json& params, Caller& caller) -> Outcome {
+         const auto job = number_of(params, "job"), to = number_of(params, "to");
+         if (!job) return invalid("/params/job: expected a job's number");
+         if (!to) return invalid("/params/to: expected a place in the queue, from 1 on");
+         person_of(caller, fmt::format("move job {} to place {}", *job, *to));
+         return done(self.desk_.move(*job, *to));
+       }},
       {"pause",
        Role::kOperator,
        {},
+       [](Self& self, const json&, Caller& caller) -> Outcome {
+         if (const auto refused = self.desk_.pause(person_of(caller, "pause"))) return *refused;
+         const auto run = self.desk_.view().run;
+         return ordered_json{{"after_run", run && run->pauses_after}};
+       }},
+      {"hold",
+       Role::kOperator,
+       {},
        [](Self& self, const json&, Caller& caller) {
-         return done(self.desk_.pause(person_of(caller, "pause")));
+         return done(self.desk_.hold(person_of(caller, "hold the queue")));
        }},
       {"resume",
        Role::kOperator,
        {"run"},
        [](Self& self, const json& params, Caller& caller) -> Outcome {
          if (!params.contains("run")) return done(self.desk_.resume(person_of(caller, "resume")));
-         const auto run = number_of(params, "run");
-         if (!run) return invalid("/params/run: expected a run's number");
-         return enqueue(self.desk_, self.setup_, self.store_,
-                        Order{{}, {}, static_cast<std::int64_t>(*run)}, caller);
+         const auto run = run_of(params);
+         if (!run) return invalid(kRunExpected);
+         return enqueue(self.desk_, self.setup_, self.store_, Order{{}, {}, *run}, caller);
        }},
       {"discard",
        Role::kOperator,
        {"run"},
        [](Self& self, const json& params, Caller& caller) -> Outcome {
-         const auto run = number_of(params, "run");
-         if (!run) return invalid("/params/run: expected a run's number");
-         return discard_run(self.desk_, self.store_, static_cast<std::int64_t>(*run), caller);
+         const auto run = run_of(params);
+         if (!run) return invalid(kRunExpected);
+         return discard_run(self.desk_, self.store_, *run, caller);
        }},
       {"abort",
        Role::kOperator,
        {"force"},
        [](Self& self, const json& params, Caller& caller) -> Outcome {
-         const json force = params.value("force", json(false));
-         if (!force.is_boolean()) return invalid("/params/force: expected true or false");
-         self.forced_ = self.forced_ || force.get<bool>();
+         const auto force = flag_of(params, "force");
+         if (!force) return invalid("/params/force: expected true or false");
+         self.forced_ = self.forced_ || *force;
          const auto refused =
-             self.desk_.abort(person_of(caller, force.get<bool>() ? "forced abort" : "abort"));
+             self.desk_.abort(person_of(caller, *force ? "forced abort" : "abort"));
          // A forced end is for a bench that does not answer: no state of the run refuses it.
          return done(self.forced_ ? RunDesk::Refused{} : refused);
        }},

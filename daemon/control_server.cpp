@@ -86,7 +86,8 @@ void ControlServer::accept_clients() {
     }
     const auto peer = credentials_of(accepted);
     const Role role = peer ? rules_.role_of(*peer) : Role::kNobody;
-    auto client = std::make_unique<Client>(accepted, Caller{peer ? peer->uid : 0, role, {}});
+    const Credentials who = peer ? *peer : Credentials{};
+    auto client = std::make_unique<Client>(accepted, Caller{who.uid, role, {}, who.groups});
     if (!peer) continue;
     if (const auto why = refusal(*peer, role)) {
       ++refused_;

@@ -38,6 +38,7 @@ struct Caller {
   uid_t uid = 0;
   Role role = Role::kNobody;
   std::optional<Subscription> subscription;
+  std::vector<gid_t> groups;
 };
 
 /// What the lines mean. Called on the server's thread, and returns soon.

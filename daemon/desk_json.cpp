@@ -25,6 +25,12 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
 
+ordered_json waiting_of(const procedures::Progress& now) {
+  if (!now.waiting) return nullptr;
+  return {{"for_s", number(now.waiting->lasted.count())},
+          {"at_most_s", number(now.waiting->at_most.count())}};
+}
+
 ordered_json to_json(const PresentRun& run) {
   const procedures::Progress& now = run.progress;
   return {{"run", run.run == 0 ? ordered_json() : ordered_json(run.run)},
@@ -38,7 +44,10 @@ ordered_json to_json(const PresentRun& run) {
           {"elapsed_s", number(now.elapsed.count())},
           {"remaining_s", number(now.remaining.count())},
           {"points", run.points},
+          {"started_s", number(now.started.count())},
+          {"waiting", waiting_of(now)},
           {"pause_requested", run.pause_requested},
+          {"pauses_after", run.pauses_after},
           {"abort_requested", run.abort_requested}};
 }
 
@@ -51,12 +60,19 @@ ordered_json to_json(const EndedRun& run) {
           {"outcome", run.outcome},
           {"reason", short_text(run.reason)},
           {"safe_state_reached", run.safe_state_reached},
-          {"points", run.points}};
+          {"points", run.points},
+          {"resumable", run.resumable}};
 }
 
 ordered_json to_json(const InterruptedRun& run) {
-  return {{"run", run.run}, {"procedure", run.procedure},   {"gyro", run.gyro},
-          {"by", run.by},   {"started_at", run.started_at}, {"points", run.points}};
+  return {
+      {"run", run.run},
+      {"procedure", run.procedure},
+      {"gyro", run.gyro},
+      {"by", run.by},
+      {"started_at", run.started_at},
+      {"points", run.points},
+      {"obstacle", run.obstacle.empty() ? ordered_json() : ordered_json(short_text(run.obstacle))}};
 }
 
 ordered_json to_json(const procedures::MonitorRow& row) {
@@ -65,6 +81,21 @@ ordered_json to_json(const procedures::MonitorRow& row) {
     values[std::string(column.name)] = number(column.value(row));
   }
   values["mode"] = name_of(row.thermostat.mode);
+  return values;
+}
+
+/// How long ago something was read; null between runs.
+ordered_json age_of(double time_s, const DeskView& view) {
+  const auto now_s = view.now_s();
+  return now_s ? number(std::max(0.0, *now_s - time_s)) : ordered_json();
+}
+
+ordered_json old_values(const DeskView& view) {
+  ordered_json values = ordered_json::object();
+  for (const KnownValue& known : view.known) {
+    values[std::string(known.name)] = {{"value", number(known.value)},
+                                       {"age_s", age_of(known.time_s, view)}};
+  }
   return values;
 }
 
@@ -89,7 +120,12 @@ std::string_view state_of(const DeskView& view) {
   if (!view.run) return "idle";
   // The instruments are being identified, which is no state of the engine.
   if (view.run->run == 0) return "starting";
-  return procedures::name_of(view.run->progress.state);
+  // An end that waits for the run log.
+  const procedures::RunState state = view.run->progress.state;
+  const bool ended = state == procedures::RunState::kCompleted ||
+                     state == procedures::RunState::kAborted ||
+                     state == procedures::RunState::kFailed;
+  return procedures::name_of(ended ? procedures::RunState::kStopping : state);
 }
 
 ordered_json to_json(const DeskView& view) {
@@ -109,6 +145,8 @@ ordered_json to_json(const DeskView& view) {
           {"run", or_null(view.run)},
           {"prompt", question},
           {"values", or_null(view.values)},
+          {"values_age_s", view.values ? age_of(view.values->time_s, view) : ordered_json()},
+          {"old_values", old_values(view)},
           {"point", or_null(view.point)},
           {"events", events},
           {"queue", {{"jobs", view.jobs}, {"held", view.held()}, {"because", view.held_because}}},
@@ -123,7 +161,8 @@ ordered_json to_json(const std::vector<QueuedJob>& queue) {
                     {"procedure", job.procedure},
                     {"gyro", job.gyro},
                     {"by", job.by},
-                    {"estimate_s", number(job.estimate.count())}});
+                    {"estimate_s", number(job.estimate.count())},
+                    {"keep_going", job.keep_going}});
   }
   return jobs;
 }

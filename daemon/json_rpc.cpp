@@ -25,8 +25,9 @@ bool is_version_2(const json& message) {
   return version != message.end() && *version == "2.0";
 }
 
+/// Other numbers would come back as the nearest double: another id.
 bool may_be_id(const json& id) {
-  return id.is_string() || id.is_number() || id.is_null();
+  return id.is_string() || id.is_number_integer() || id.is_null();
 }
 
 }  // namespace
@@ -42,7 +43,8 @@ std::variant<RpcRequest, RpcRefusal> parse_request(std::string_view line) {
   if (const auto id = message.find("id"); id != message.end()) {
     if (!may_be_id(*id)) {
       return RpcRefusal{"null",
-                        {RpcCode::kInvalidRequest, "request: /id: expected a number or a string"}};
+                        {RpcCode::kInvalidRequest,
+                         "request: /id: expected a string, or a whole number of 64 bits"}};
     }
     request.id = dumped(*id);
   }

@@ -1,14 +1,41 @@
 #include "daemon/order.hpp"
 
+#include <fmt/format.h>
+
 #include "config/json_file.hpp"
+#include "config/paths.hpp"
 #include "daemon/resumption.hpp"
 
 namespace fogbench::daemon {
 
+namespace {
+
+Result<PlannedProcedure> plan_named(const Order& order, const Setup& setup,
+                                    const Credentials& reader) {
+  if (!order.procedure.starts_with('/')) {
+    const auto ready = config::find_ready("procedures", order.procedure);
+    if (!ready && order.procedure.find('/') != std::string::npos) {
+      return config::bad_input(
+          fmt::format("{}: expected a ready procedure's name, or the file's full path",
+                      config::one_line(order.procedure)));
+    }
+    if (!ready) return ready.error();
+    return plan_procedure(ready->string(), setup.bench, order.set);
+  }
+  const BorrowedRights rights(reader);
+  if (!rights.taken()) {
+    return config::bad_input(fmt::format("{}: cannot be read with the rights of {}",
+                                         order.procedure, user_name(reader.uid)));
+  }
+  return plan_procedure(order.procedure, setup.bench, order.set);
+}
+
+}  // namespace
+
 Result<PlannedProcedure> plan_order(const Order& order, const Setup& setup,
-                                    const std::filesystem::path& store) {
+                                    const std::filesystem::path& store, const Credentials& reader) {
   if (order.takes_up == 0) {
-    auto planned = plan_procedure(order.procedure, setup.bench, order.set);
+    auto planned = plan_named(order, setup, reader);
     if (planned && !order.gyro.empty()) planned->gyro = order.gyro;
     return planned;
   }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "config/result.hpp"
+#include "daemon/access.hpp"
 #include "daemon/session.hpp"
 
 namespace fogbench::daemon {
@@ -16,12 +17,15 @@ struct Order {
   std::string procedure;  ///< a ready one's name, or a file's full path
   Parameters set;
   std::int64_t takes_up = 0;  ///< a run that was interrupted, in place of the others; 0: none
-  std::string gyro;  ///< serial number; empty: that of the daemon, else of the bench's file
+  std::string gyro;         ///< serial number; empty: that of the daemon, else of the bench's file
+  bool keep_going = false;  ///< also when the run before it has failed, the bench being safe
 };
 
-/// `store` is the run log that holds what is taken up. Errors: as plan_procedure, plan_resumption.
+/// `store` is the run log that holds what is taken up; `reader` is who may read the procedure's
+/// file, where it is no ready one. Errors: as plan_procedure, plan_resumption; kBadInput for a path
+/// that is not a full one, which the daemon would look for in a folder of its own.
 Result<PlannedProcedure> plan_order(const Order& order, const Setup& setup,
-                                    const std::filesystem::path& store);
+                                    const std::filesystem::path& store, const Credentials& reader);
 
 /// What kSerialNumberRule says.
 bool is_serial_number(std::string_view text);

@@ -32,7 +32,7 @@ std::optional<Kept> kept_from(const nlohmann::json& entry) {
   if (const auto run = entry.find("takes_up"); run != entry.end()) {
     if (!run->is_number_unsigned()) return std::nullopt;
     kept.order.takes_up = run->get<std::int64_t>();
-    return kept;
+    return kept;  // a person's order to go on: no failure before it counts
   }
   if (!entry.contains("procedure") || !entry["procedure"].is_string() || !entry.contains("set")) {
     return std::nullopt;
@@ -46,6 +46,10 @@ std::optional<Kept> kept_from(const nlohmann::json& entry) {
       return std::nullopt;
     }
     kept.order.gyro = gyro->get<std::string>();
+  }
+  if (const auto goes_on = entry.find("keep_going"); goes_on != entry.end()) {
+    if (!goes_on->is_boolean()) return std::nullopt;
+    kept.order.keep_going = goes_on->get<bool>();
   }
   return kept;
 }
@@ -69,30 +73,38 @@ Status QueueFile::load(RunDesk& desk, const Setup& setup, const std::filesystem:
   if (!std::filesystem::exists(path_, error)) return {};
   const auto document = config::read_json_file(path_);
   if (!document) return document.error();
-  if (!document->is_array()) {
+  // A list alone is what earlier versions wrote.
+  const nlohmann::json none;
+  const nlohmann::json& jobs = document->is_object() ? document->value("jobs", none) : *document;
+  const nlohmann::json hold = document->is_object() ? document->value("hold", none) : none;
+  if (!jobs.is_array()) {
     return config::bad_input(path_.string() + ": expected a list of the runs that wait");
   }
-  for (std::size_t i = 0; i < document->size(); ++i) {
-    const auto kept = kept_from((*document)[i]);
+  if (!hold.is_null() && !hold.is_string()) {
+    return config::bad_input(path_.string() + ": /hold: expected why the queue is held");
+  }
+  if (hold.is_string()) desk.restore_hold(hold.get<std::string>());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const auto kept = kept_from(jobs[i]);
     if (!kept) {
-      return config::bad_input(fmt::format(
-          "{}: /{}: expected procedure, set, by, uid and perhaps gyro of a run that waits",
-          path_.string(), i));
+      return config::bad_input(
+          fmt::format("{}: job {}: expected procedure, set, by, uid and perhaps gyro and "
+                      "keep_going of a run that waits",
+                      path_.string(), i + 1));
     }
-    auto planned = plan_order(kept->order, setup, store);
+    auto planned = plan_order(kept->order, setup, store, credentials_of_user(kept->by.uid));
     if (!planned) {
       spdlog::warn("{}, asked for by {}, is no longer in the queue: {}", title_of(kept->order),
                    kept->by.name, planned.error().message);
       continue;
     }
-    (void)desk.enqueue(kept->order, std::move(*planned), kept->by);
-    desk.hold();
+    desk.restore(kept->order, std::move(*planned), kept->by);
   }
   return {};
 }
 
 void QueueFile::update(const RunDesk& desk) {
-  const RunDesk::Waiting waiting = desk.waiting();
+  const JobQueue::Waiting waiting = desk.waiting();
   if (waiting.changes == written_) return;
   const Status written = write(waiting);
   if (written) {
@@ -103,9 +115,9 @@ void QueueFile::update(const RunDesk& desk) {
   failing_ = !written;
 }
 
-Status QueueFile::write(const RunDesk::Waiting& waiting) const {
+Status QueueFile::write(const JobQueue::Waiting& waiting) const {
   std::error_code error;
-  if (waiting.orders.empty()) {
+  if (waiting.orders.empty() && waiting.asked_hold.empty()) {
     std::filesystem::remove(path_, error);
     if (!error) return {};
     return config::bad_input(fmt::format("{}: {}", path_.string(), error.message()));
@@ -120,12 +132,15 @@ Status QueueFile::write(const RunDesk::Waiting& waiting) const {
       entry["set"] = to_json(order.set);
       if (!order.gyro.empty()) entry["gyro"] = order.gyro;
     }
+    if (order.keep_going) entry["keep_going"] = true;
     entry["by"] = by.name;
     entry["uid"] = by.uid;
     list.push_back(std::move(entry));
   }
+  ordered_json document{{"jobs", std::move(list)}};
+  if (!waiting.asked_hold.empty()) document["hold"] = waiting.asked_hold;
   constexpr auto kReplace = ordered_json::error_handler_t::replace;
-  return config::write_file(path_, list.dump(2, ' ', false, kReplace) + "\n");
+  return config::write_file(path_, document.dump(2, ' ', false, kReplace) + "\n");
 }
 
 }  // namespace fogbench::daemon

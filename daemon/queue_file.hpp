@@ -20,8 +20,8 @@ class QueueFile {
   /// Errors: kHeld, which names the process that is; kDevice.
   static Result<QueueFile> open(const std::filesystem::path& store);
 
-  /// Puts what is in the file into the desk's queue, which it holds. What can no longer be planned
-  /// is left out, with its reason in the log. kBadInput when the file is none of ours.
+  /// Puts what is in the file into the desk's queue, which is held then. What can no longer be
+  /// planned is left out, with its reason in the log. kBadInput when the file is none of ours.
   Status load(RunDesk& desk, const Setup& setup, const std::filesystem::path& store);
 
   /// Writes when the queue has changed since the last time; no file is an empty queue. A failure is
@@ -31,7 +31,7 @@ class QueueFile {
  private:
   QueueFile(std::filesystem::path path, std::unique_ptr<drivers::ProcessLock> serving)
       : path_(std::move(path)), serving_(std::move(serving)) {}
-  Status write(const RunDesk::Waiting& waiting) const;
+  Status write(const JobQueue::Waiting& waiting) const;
 
   std::filesystem::path path_;
   std::unique_ptr<drivers::ProcessLock> serving_;

@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "config/scratch_folder.hpp"
+#include "daemon/bench_difference.hpp"
 #include "daemon/parameters_json.hpp"
 #include "procedures/estimate.hpp"
+#include "procedures/planned_points.hpp"
 #include "procedures/resume_plan.hpp"
 
 namespace fogbench::daemon {
@@ -98,6 +100,23 @@ Result<std::vector<Continuation::Repeated>> repeated(RunLogReader& log,
   return std::vector<Continuation::Repeated>{};  // it was never begun
 }
 
+/// Points that count and are not measured anew.
+Result<std::size_t> measured(RunLogReader& log, const std::vector<StoredRun>& chain,
+                             const std::vector<Continuation::Repeated>& repeated) {
+  std::size_t kept = 0;
+  for (const StoredRun& run : chain) {
+    const auto points = log.points(run.run);
+    if (!points) return points.error();
+    const auto anew = std::find_if(repeated.begin(), repeated.end(),
+                                   [&](const auto& from) { return from.run == run.run; });
+    for (const StoredPoint& point : *points) {
+      const bool again = anew != repeated.end() && point.point.time_s >= anew->from_s;
+      kept += point.void_because.empty() && !again ? 1 : 0;
+    }
+  }
+  return kept;
+}
+
 Status check(const StoredRun& run, const Setup& setup) {
   const auto refused = [&](const std::string& why) {
     return config::bad_input(fmt::format("run {} cannot be taken up: {}", run.run, why));
@@ -108,10 +127,10 @@ Status check(const StoredRun& run, const Setup& setup) {
     return refused(
         fmt::format("it is of bench {}, expected {}", run.header.bench, setup.bench.name));
   }
-  if (run.header.bench_json != setup.bench_json) {
-    return refused(
-        "the bench's file, or one of its instruments', was another then: the points would not be "
-        "of one bench");
+  if (const std::string changed = bench_difference(run.header.bench_json, setup.bench_json);
+      !changed.empty()) {
+    return refused(fmt::format(
+        "the points would not be of one bench, whose files have changed since: {}", changed));
   }
   if (run.header.scenario_json != setup.scenario_json) return refused("it is of another scenario");
   return {};
@@ -159,11 +178,19 @@ Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, co
 
   TakenUp before;
   before.continuation.run = run;
-  if (resumed->first < planned->plan.steps.size()) {
+  const bool steps_left = resumed->first < planned->plan.steps.size();
+  if (steps_left) {
     before.continuation.first_step = planned->plan.steps[resumed->first].path;
     auto voids = repeated(log, *chain, before.continuation.first_step);
     if (!voids) return voids.error();
     before.continuation.repeated = std::move(*voids);
+  }
+  const auto kept = measured(log, *chain, before.continuation.repeated);
+  if (!kept) return kept.error();
+  before.continuation.points = *kept;
+  if (!steps_left && *kept == 0 && procedures::measures(planned->plan)) {
+    return config::bad_input(fmt::format(
+        "run {} cannot be taken up: it has measured nothing, and no step is left of it", run));
   }
   auto instruments = log.instruments(run);
   if (!instruments) return instruments.error();
@@ -208,22 +235,22 @@ Result<Continuation> take_up(const PlannedProcedure& procedure, procedures::RunE
   return continuation;
 }
 
-Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const Setup& setup) {
+Result<std::vector<StoredRun>> interrupted_runs(RunLogReader& log, const Setup& setup) {
   const auto runs = log.runs();
   if (!runs) return runs.error();
-  const auto counts = [&](const StoredRun& run) {
+  std::vector<StoredRun> interrupted;
+  for (const StoredRun& run : *runs) {
     // A real bench and a dry run of its file have the same name.
     const bool simulated = !run.header.scenario_json.empty();
-    return run.header.bench == setup.bench.name && simulated == !setup.scenario_json.empty() &&
-           (run.end || !log.being_written(run.run));
-  };
-  const auto last = std::find_if(runs->rbegin(), runs->rend(), counts);
-  if (last == runs->rend() || last->end) return std::optional<StoredRun>{};
-  // It may have ended since it was read.
-  auto present = log.run(last->run);
-  if (!present) return present.error();
-  if (present->end) return std::optional<StoredRun>{};
-  return std::optional(std::move(*present));
+    const bool ours = run.header.bench == setup.bench.name &&
+                      simulated == !setup.scenario_json.empty() && run.taken_up_by == 0;
+    if (!ours || run.end || log.being_written(run.run)) continue;
+    // It may have ended since it was read.
+    auto present = log.run(run.run);
+    if (!present) return present.error();
+    if (!present->end) interrupted.push_back(std::move(*present));
+  }
+  return interrupted;
 }
 
 }  // namespace fogbench::daemon

@@ -8,7 +8,7 @@
 // anew. Both together are one set of measurements (RunLogReader::chain_points).
 
 #include <cstdint>
-#include <optional>
+#include <vector>
 
 #include "daemon/run_log_reader.hpp"
 #include "daemon/session.hpp"
@@ -26,8 +26,9 @@ Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, co
 Result<procedures::Continuation> take_up(const PlannedProcedure& procedure,
                                          procedures::RunEngine& engine, drivers::Clock& clock);
 
-/// The last run of this bench when nobody ended it. What another program writes at this moment does
-/// not count, nor does a dry run of a real bench's file.
-Result<std::optional<StoredRun>> interrupted_run(RunLogReader& log, const Setup& setup);
+/// The runs of this bench that nobody ended, took up or gave up, oldest first, whatever came after
+/// them. What another program writes at this moment does not count, nor does a dry run of a real
+/// bench's file.
+Result<std::vector<StoredRun>> interrupted_runs(RunLogReader& log, const Setup& setup);
 
 }  // namespace fogbench::daemon

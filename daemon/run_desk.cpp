@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -12,14 +11,21 @@ namespace fogbench::daemon {
 namespace {
 
 using Lock = std::lock_guard<std::mutex>;
+using procedures::RunOutcome;
 
 RpcError wrong_state(std::string says) {
   return {RpcCode::kWrongState, std::move(says)};
 }
 
 constexpr auto kNothingRuns = "nothing is running";
+constexpr auto kStopping = "the daemon is stopping";
 
 }  // namespace
+
+std::optional<double> DeskView::now_s() const {
+  if (!run || run->run == 0) return std::nullopt;
+  return (run->progress.started + run->progress.elapsed).count();
+}
 
 void RunDesk::note(const std::string& action, const Person& by) {
   changed();
@@ -32,39 +38,24 @@ void RunDesk::note(const std::string& action, const Person& by) {
 std::variant<std::uint64_t, RpcError> RunDesk::enqueue(Order order, PlannedProcedure procedure,
                                                        const Person& by) {
   const Lock lock(mutex_);
-  if (view_.closing) return wrong_state("the daemon is stopping");
-  if (queue_.size() == kMostJobs) {
-    return RpcError{RpcCode::kQueueFull, fmt::format("the queue holds {} runs already", kMostJobs)};
-  }
-  if (order.takes_up != 0 && takes_up(order.takes_up)) {
-    return wrong_state(fmt::format("a job takes up run {} already", order.takes_up));
-  }
-  // Nothing waits behind what failed: whoever asks now wants this run.
-  if (queue_.empty() || order.takes_up != 0) hold_.clear();
-  const auto place = order.takes_up != 0 ? queue_.begin() : queue_.end();
-  queue_.insert(place, {++jobs_ever_, std::move(order), std::move(procedure), by});
-  show_hold();
-  ++queue_changes_;
-  view_.jobs = queue_.size();
+  if (view_.closing) return wrong_state(kStopping);
+  auto added = queue_.add(std::move(order), std::move(procedure), by);
   changed();
-  job_or_close_.notify_one();
-  return jobs_ever_;
+  return added;
 }
 
 RunDesk::Refused RunDesk::remove(std::uint64_t job, const Person& /*by*/) {
   const Lock lock(mutex_);
-  const auto found =
-      std::find_if(queue_.begin(), queue_.end(), [&](const Job& j) { return j.job == job; });
-  if (found == queue_.end()) {
-    return RpcError{RpcCode::kNotFound, fmt::format("job {} is not in the queue", job)};
-  }
-  queue_.erase(found);
-  ++queue_changes_;
-  if (queue_.empty()) hold_.clear();
-  show_hold();
-  view_.jobs = queue_.size();
+  auto refused = queue_.remove(job);
   changed();
-  return {};
+  return refused;
+}
+
+RunDesk::Refused RunDesk::move(std::uint64_t job, std::uint64_t place) {
+  const Lock lock(mutex_);
+  auto refused = queue_.move(job, place);
+  changed();
+  return refused;
 }
 
 RunDesk::Refused RunDesk::pause(const Person& by) {
@@ -73,28 +64,45 @@ RunDesk::Refused RunDesk::pause(const Person& by) {
   if (view_.run->abort_requested) return wrong_state("the run is being aborted");
   if (view_.run->pause_requested) return wrong_state("the run was paused already");
   view_.run->pause_requested = true;
+  pause_asked_by_ = by.name;
   if (engine_runs_) engine_->request_pause();
   note("pause", by);
   return {};
 }
 
+RunDesk::Refused RunDesk::hold(const Person& by) {
+  const Lock lock(mutex_);
+  if (view_.closing) return wrong_state(kStopping);
+  queue_.hold("asked for by " + by.name);
+  note("hold the queue", by);
+  return {};
+}
+
+bool RunDesk::can_still_pause() const {
+  if (view_.run->run == 0) return true;
+  const std::size_t now = view_.run->progress.step;
+  for (std::size_t i = now + 1; i < blocks_.size(); ++i) {
+    if (blocks_[i] == 0 || blocks_[i] != blocks_[now]) return true;
+  }
+  return false;
+}
+
 RunDesk::Refused RunDesk::resume(const Person& by) {
   const Lock lock(mutex_);
-  if (view_.run) {
-    if (view_.run->abort_requested) return wrong_state("the run is being aborted");
-    // An interlock may have paused it.
-    const bool paused = view_.run->progress.state == procedures::RunState::kPaused;
-    if (!view_.run->pause_requested && !paused) return wrong_state("the run is not paused");
+  if (view_.run && view_.run->abort_requested) return wrong_state("the run is being aborted");
+  // An interlock may have paused it.
+  if (view_.run &&
+      (view_.run->pause_requested || view_.run->progress.state == procedures::RunState::kPaused)) {
     view_.run->pause_requested = false;
     if (engine_runs_) engine_->request_resume();
     note("resume", by);
     return {};
   }
-  if (!view_.held()) return wrong_state(kNothingRuns);
-  hold_.clear();
-  show_hold();
-  changed();
-  job_or_close_.notify_one();
+  if (queue_.held_because().empty()) {
+    return wrong_state(view_.run ? "the run is not paused" : kNothingRuns);
+  }
+  queue_.go_on();
+  note("go on with the queue", by);
   return {};
 }
 
@@ -130,20 +138,26 @@ void RunDesk::close(const Person& by) {
     if (engine_runs_) engine_->request_abort();
     note("abort", by);
   }
-  job_or_close_.notify_one();
 }
 
 DeskView RunDesk::view() const {
   const Lock lock(mutex_);
-  return view_;
+  DeskView view = view_;
+  view.jobs = queue_.jobs().size();
+  view.held_because = queue_.held_because();
+  view.interrupted = offered_.last();
+  if (view.run && view.run->progress.state != procedures::RunState::kPaused) {
+    view.run->pauses_after = view.run->pause_requested && !can_still_pause();
+  }
+  return view;
 }
 
 std::vector<QueuedJob> RunDesk::queue() const {
   const Lock lock(mutex_);
   std::vector<QueuedJob> jobs;
-  for (const Job& job : queue_) {
+  for (const Job& job : queue_.jobs()) {
     jobs.push_back({job.job, job.procedure.plan.procedure, job.by.name, job.procedure.plan.estimate,
-                    job.procedure.gyro});
+                    job.procedure.gyro, job.order.keep_going});
   }
   return jobs;
 }
@@ -153,54 +167,43 @@ std::vector<EndedRun> RunDesk::ended_runs() const {
   return {ended_.begin(), ended_.end()};
 }
 
-RunDesk::Waiting RunDesk::waiting() const {
+JobQueue::Waiting RunDesk::waiting() const {
   const Lock lock(mutex_);
-  Waiting waiting{queue_changes_, {}};
-  if (starting_) waiting.orders.push_back(*starting_);
-  for (const Job& job : queue_) waiting.orders.emplace_back(job.order, job.by);
-  return waiting;
+  return queue_.waiting();
+}
+
+void RunDesk::restore(Order order, PlannedProcedure procedure, const Person& by) {
+  const Lock lock(mutex_);
+  queue_.restore(std::move(order), std::move(procedure), by);
+  changed();
+}
+
+void RunDesk::restore_hold(std::string because) {
+  const Lock lock(mutex_);
+  queue_.hold(std::move(because));
+  changed();
 }
 
 void RunDesk::offer(InterruptedRun run) {
   const Lock lock(mutex_);
-  view_.interrupted = std::move(run);
+  offered_.add(std::move(run));
   changed();
-}
-
-void RunDesk::show_hold() {
-  view_.held_because = hold_;
-  if (hold_.empty() || queue_.empty() || queue_.front().procedure.gyro.empty()) return;
-  view_.held_because +=
-      fmt::format(", the next needs gyro {} on the bench", queue_.front().procedure.gyro);
-}
-
-bool RunDesk::takes_up(std::int64_t run) const {
-  return (starting_ && starting_->first.takes_up == run) ||
-         std::any_of(queue_.begin(), queue_.end(),
-                     [run](const Job& job) { return job.order.takes_up == run; });
 }
 
 RunDesk::Refused RunDesk::may_discard(std::int64_t run) const {
   const Lock lock(mutex_);
-  if (!view_.interrupted || view_.interrupted->run != run) {
+  if (!offered_.has(run)) {
     return RpcError{RpcCode::kNotFound, fmt::format("run {} does not wait to be taken up", run)};
   }
-  if (takes_up(run)) {
+  if (queue_.takes_up(run)) {
     return wrong_state(fmt::format("a job takes up run {}: remove it from the queue first", run));
   }
   return {};
 }
 
-void RunDesk::withdraw_offer() {
+void RunDesk::withdraw_offer(std::int64_t run) {
   const Lock lock(mutex_);
-  view_.interrupted.reset();
-  changed();
-}
-
-void RunDesk::hold() {
-  const Lock lock(mutex_);
-  if (!queue_.empty()) hold_ = "the daemon was started anew";
-  show_hold();
+  offered_.withdraw(run);
   changed();
 }
 
@@ -239,26 +242,29 @@ void RunDesk::attach(procedures::RunEngine& engine) {
 std::optional<Job> RunDesk::next_job() {
   std::unique_lock lock(mutex_);
   pulse_.waits_for_job = true;
-  job_or_close_.wait(lock, [this] { return view_.closing || (!queue_.empty() && !view_.held()); });
+  job_or_close_.wait(lock, [this] {
+    return view_.closing || (!queue_.jobs().empty() && queue_.held_because().empty());
+  });
   pulse_.waits_for_job = false;
   if (view_.closing) {
     deserted_ = true;
     return std::nullopt;
   }
-  Job job = std::move(queue_.front());
-  queue_.pop_front();
-  starting_.emplace(job.order, job.by);
-  ++queue_changes_;
-  view_.jobs = queue_.size();
+  Job job = queue_.take();
   PresentRun run;
   run.job = job.job;
   run.procedure = job.procedure.plan.procedure;
   run.by = job.by.name;
   run.gyro = job.procedure.gyro;
   run.progress.steps = job.procedure.plan.steps.size();
+  blocks_.clear();
+  for (const auto& step : job.procedure.plan.steps) blocks_.push_back(step.block);
+  takes_up_ = job.order.takes_up;
   run.progress.remaining = job.procedure.plan.estimate;
   view_.run = std::move(run);
   view_.values.reset();
+  view_.known.clear();
+  known_ = {};
   view_.point.reset();
   view_.events.clear();
   block_ = 0;
@@ -272,11 +278,8 @@ std::optional<Job> RunDesk::next_job() {
 void RunDesk::run_begun(std::int64_t run) {
   const Lock lock(mutex_);
   view_.run->run = run;
-  if (starting_ && view_.interrupted && starting_->first.takes_up == view_.interrupted->run) {
-    view_.interrupted.reset();
-  }
-  starting_.reset();
-  ++queue_changes_;
+  offered_.withdraw(takes_up_);
+  queue_.recorded();
   engine_runs_ = true;
   if (view_.run->abort_requested) engine_->request_abort();
   if (view_.run->pause_requested) engine_->request_pause();
@@ -293,6 +296,7 @@ void RunDesk::progressed(const procedures::Progress& progress) {
 void RunDesk::saw(const procedures::MonitorRow& row) {
   const Lock lock(mutex_);
   view_.values = row;
+  view_.known = known_.missing(row);
   changed();
 }
 
@@ -331,7 +335,6 @@ void RunDesk::voided(int block) {
 
 void RunDesk::run_ending(const procedures::RunEnd& end) {
   const Lock lock(mutex_);
-  engine_runs_ = false;
   end_ = end;
   changed();
 }
@@ -339,25 +342,24 @@ void RunDesk::run_ending(const procedures::RunEnd& end) {
 void RunDesk::run_ended(const Result<procedures::RunSummary>& summary) {
   const Lock lock(mutex_);
   engine_runs_ = false;
-  starting_.reset();
-  ++queue_changes_;
-  EndedRun ended{view_.run->job, view_.run->run, view_.run->procedure, view_.run->by};
-  ended.points = view_.run->points;
-  ended.gyro = view_.run->gyro;
+  if (engine_ != nullptr) engine_->withdraw_requests();  // what came too late for it
+  const PresentRun& run = *view_.run;
+  const auto outcome = summary ? summary->end.outcome : RunOutcome::kFailed;
+  EndedRun ended{run.job, run.run, run.procedure, run.by};
+  ended.points = run.points;
+  ended.gyro = run.gyro;
   // One that did not begin has no end of its own.
   ended.safe_state_reached =
       end_ ? end_->safe_state_reached : engine_ == nullptr || engine_->left_safe();
-  ended.outcome = name_of(summary ? summary->end.outcome : procedures::RunOutcome::kFailed);
+  ended.outcome = name_of(outcome);
   ended.reason = summary ? summary->end.reason : summary.error().message;
-  if (!queue_.empty()) {
-    if (ended.outcome != name_of(procedures::RunOutcome::kCompleted)) {
-      hold_ = fmt::format("the last run was not completed ({})", ended.outcome);
-    } else if (const std::string& next = queue_.front().procedure.gyro;
-               next != ended.gyro && !next.empty() && !ended.gyro.empty()) {
-      hold_ = fmt::format("the last run was for gyro {}", ended.gyro);
-    }
-    show_hold();
+  ended.resumable =
+      run.run != 0 && outcome != RunOutcome::kCompleted && run.progress.step < run.progress.steps;
+  // An abort says more than the pause before it.
+  if (run.pause_requested && outcome != RunOutcome::kAborted) {
+    queue_.hold(fmt::format("{} paused run {}, which ended first", pause_asked_by_, run.run));
   }
+  queue_.ended(outcome, ended.safe_state_reached);
   ++view_.totals.runs[ended.outcome];
   view_.run.reset();
   view_.question.reset();

@@ -6,10 +6,9 @@
 // A run's life here:   queued ── next_job ──► starting ── run_begun ──► running, paused, stopping
 //                                                ── run_ended ──► among the last runs
 //
-// What a run asks of the engine (pause, resume, abort) reaches it between run_begun and run_ending
-// only, so that an order for one run never falls on the next. After a run that was aborted or
-// failed the queue is held: a bench that has just failed heats up again when a person says so. So
-// it is before a job for another gyro, which somebody must put on the bench.
+// What a run asks of the engine (pause, resume, abort) reaches it between run_begun and run_ended
+// only, so that an order for one run never falls on the next. A pause that finds no step to hold
+// before holds the queue instead. When the queue is held, and why: job_queue.hpp.
 
 #include <condition_variable>
 #include <cstdint>
@@ -21,8 +20,10 @@
 #include <variant>
 #include <vector>
 
+#include "daemon/job_queue.hpp"
 #include "daemon/json_rpc.hpp"
-#include "daemon/order.hpp"
+#include "daemon/known_values.hpp"
+#include "daemon/offered_runs.hpp"
 #include "daemon/session.hpp"
 #include "daemon/totals.hpp"
 #include "procedures/recorder.hpp"
@@ -30,25 +31,13 @@
 
 namespace fogbench::daemon {
 
-/// Who asks for something.
-struct Person {
-  std::string name;
-  std::uint32_t uid = 0;
-};
-
-struct Job {
-  std::uint64_t job = 0;
-  Order order;
-  PlannedProcedure procedure;
-  Person by;
-};
-
 struct QueuedJob {
   std::uint64_t job = 0;
   std::string procedure;
   std::string by;
   config::Seconds estimate{0.0};
   std::string gyro;  ///< serial number, here and below
+  bool keep_going = false;
 };
 
 struct PresentRun {
@@ -59,17 +48,8 @@ struct PresentRun {
   procedures::Progress progress;
   std::size_t points = 0;
   bool pause_requested = false;
+  bool pauses_after = false;  ///< the pause finds no step to hold before: it holds the queue
   bool abort_requested = false;
-  std::string gyro;
-};
-
-/// A run that nobody ended, found when the daemon started.
-struct InterruptedRun {
-  std::int64_t run = 0;
-  std::string procedure;
-  std::string by;
-  std::string started_at;
-  std::int64_t points = 0;
   std::string gyro;
 };
 
@@ -83,6 +63,7 @@ struct EndedRun {
   bool safe_state_reached = true;
   std::size_t points = 0;
   std::string gyro;
+  bool resumable = false;  ///< not completed, and steps are left
 };
 
 struct SeenEvent {
@@ -101,10 +82,11 @@ struct DeskView {
   std::optional<PresentRun> run;
   std::optional<Question> question;
   std::optional<procedures::MonitorRow> values;  ///< the present run's last
+  std::vector<KnownValue> known;                 ///< of those that are missing in it
   std::optional<procedures::Point> point;        ///< the present run's last
   std::deque<SeenEvent> events;                  ///< the last ones, oldest first
   std::optional<EndedRun> last_run;
-  std::optional<InterruptedRun> interrupted;  ///< until it is taken up or given up
+  std::optional<InterruptedRun> interrupted;  ///< the last one that nobody has decided on
   std::size_t jobs = 0;
   std::string held_because;  ///< why the queue waits for a person; empty: it does not
   bool held() const { return !held_because.empty(); }
@@ -112,6 +94,8 @@ struct DeskView {
   std::string
       bench_waits_for;  ///< what is wrong while an instrument has not begun; empty: all have
   BenchTotals totals;
+  /// Since the gyro's power-on, as the times of readings, points and events; null between runs.
+  std::optional<double> now_s() const;
 };
 
 /// An action for the run's record, with who did it.
@@ -122,19 +106,21 @@ struct Note {
 
 class RunDesk {
  public:
-  static constexpr std::size_t kMostJobs = 100;
   static constexpr std::size_t kMostEvents = 20;
   static constexpr std::size_t kMostEndedRuns = 100;
 
   // --- The control socket's thread. A refusal is an RpcError.
-  using Refused = std::optional<RpcError>;
-  /// A run that is taken up goes before what waits, and what waits goes on after it. Only one job
-  /// takes a run up.
+  using Refused = JobQueue::Refused;
+  /// As JobQueue::add.
   std::variant<std::uint64_t, RpcError> enqueue(Order order, PlannedProcedure procedure,
                                                 const Person& by);
   Refused remove(std::uint64_t job, const Person& by);
+  Refused move(std::uint64_t job, std::uint64_t place);
+  /// Before the next divisible step; where none is left, the queue is held after the run.
   Refused pause(const Person& by);
-  /// Resumes a run, or a queue that is held.
+  /// No run begins after the one that is under way, if any.
+  Refused hold(const Person& by);
+  /// Resumes a run that is paused, else the queue.
   Refused resume(const Person& by);
   Refused abort(const Person& by);
   Refused answer(std::uint64_t prompt, bool yes, const Person& by);
@@ -143,19 +129,15 @@ class RunDesk {
   DeskView view() const;
   std::vector<QueuedJob> queue() const;
   std::vector<EndedRun> ended_runs() const;
-  /// What is to be done again if the process died now: the queue, and before it the job whose run
-  /// is not on record yet. `changes` rises with every change of it.
-  struct Waiting {
-    std::uint64_t changes = 0;
-    std::vector<std::pair<Order, Person>> orders;
-  };
-  Waiting waiting() const;
+  JobQueue::Waiting waiting() const;
+  /// What an earlier daemon had in its queue, and a hold that somebody had asked of it.
+  void restore(Order order, PlannedProcedure procedure, const Person& by);
+  void restore_hold(std::string because);
+  /// Runs that nobody ended, oldest first: each until it is taken up or given up.
   void offer(InterruptedRun run);
-  /// Whether the run that was offered may be given up: not when a job takes it up.
+  /// Whether a run that was offered may be given up: not when a job takes it up.
   Refused may_discard(std::int64_t run) const;
-  void withdraw_offer();
-  /// Nothing begins until somebody resumes.
-  void hold();
+  void withdraw_offer(std::int64_t run);
   /// An abort has been asked for and the bench is not safe yet.
   bool aborting() const;
   /// How the bench's thread is: `beats` rises about once a second while it advances.
@@ -182,7 +164,8 @@ class RunDesk {
   void saw(SeenEvent event);
   void saw(const drivers::StreamStatistics& stream);
   void voided(int block);
-  /// From here on no order reaches the engine.
+  /// The bench has been brought to its safe state, or not; the end may have to wait for the run
+  /// log.
   void run_ending(const procedures::RunEnd& end);
   void run_ended(const Result<procedures::RunSummary>& summary);
   /// What was done since it was last asked.
@@ -195,23 +178,27 @@ class RunDesk {
  private:
   /// All with the mutex held.
   void note(const std::string& action, const Person& by);
-  bool takes_up(std::int64_t run) const;
-  /// What is seen of a hold: its cause, and which gyro the job needs that would begin now.
-  void show_hold();
-  void changed() { ++view_.version; }
+  /// Whether the run has a step before which it can hold.
+  bool can_still_pause() const;
+  void changed() {
+    ++view_.version;
+    job_or_close_.notify_one();  // what held a job may be gone
+  }
 
   mutable std::mutex mutex_;
   std::condition_variable job_or_close_;
   procedures::RunEngine* engine_ = nullptr;
   Pulse pulse_;
   bool deserted_ = false;
-  bool engine_runs_ = false;  ///< between run_begun and run_ending
-  std::deque<Job> queue_;
-  std::string hold_;  ///< why nothing begins until somebody resumes; empty: it does
-  std::optional<std::pair<Order, Person>> starting_;  ///< taken, and no run on record yet
-  std::uint64_t queue_changes_ = 0;
-  std::uint64_t jobs_ever_ = 0, prompts_ever_ = 0;
-  DeskView view_;
+  bool engine_runs_ = false;  ///< between run_begun and run_ended
+  JobQueue queue_;
+  std::uint64_t prompts_ever_ = 0;
+  DeskView view_;  ///< but for what view() derives
+  KnownValues known_;
+  std::vector<int> blocks_;  ///< of the present run's steps
+  std::string pause_asked_by_;
+  std::int64_t takes_up_ = 0;  ///< what the present run takes up; 0: none
+  OfferedRuns offered_;
   std::optional<bool> answer_;
   int block_ = 0;  ///< of the last point, and how many points it has
   std::size_t block_points_ = 0;

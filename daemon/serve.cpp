@@ -69,16 +69,19 @@ Status take_over(const Setup& setup, const std::filesystem::path& store, QueueFi
                  RunDesk& desk) {
   const auto log = RunLogReader::open(store);
   if (!log) return log.error();
-  const auto left = interrupted_run(**log, setup);
+  const auto left = interrupted_runs(**log, setup);
   if (!left) return left.error();
-  if (*left) {
-    const procedures::RunHeader& header = (*left)->header;
-    spdlog::warn(
-        "run {}, {}, was interrupted; it waits to be taken up (fogbench resume {}) or "
-        "given up (fogbench resume {} --discard)",
-        (*left)->run, header.procedure, (*left)->run, (*left)->run);
-    desk.offer({(*left)->run, header.procedure, header.operator_name, header.started_at,
-                (*left)->points - (*left)->points_void, header.gyro_serial_number});
+  for (const StoredRun& run : *left) {
+    const procedures::RunHeader& header = run.header;
+    const auto resumed = plan_resumption(**log, run.run, setup);
+    const std::string obstacle = resumed ? "" : resumed.error().message;
+    spdlog::warn("run {}, {}, was interrupted; {} given up (fogbench resume {} --discard)", run.run,
+                 header.procedure,
+                 resumed ? fmt::format("it waits to be taken up (fogbench resume {}) or", run.run)
+                         : obstacle + "; it waits to be",
+                 run.run);
+    desk.offer({run.run, header.procedure, header.operator_name, header.started_at,
+                run.points - run.points_void, header.gyro_serial_number, obstacle});
   }
   if (const Status loaded = queue.load(desk, setup, store); !loaded) return loaded;
   const std::size_t jobs = desk.view().jobs;

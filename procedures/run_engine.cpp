@@ -127,9 +127,9 @@ void RunEngine::Run::report(const std::string& says) const {
                     step_,
                     plan_.steps.size(),
                     says,
-                    Seconds{watch_.time_s(started_)},
                     elapsed,
                     remaining_.remaining(step_, Seconds{to_seconds(now - step_started_)}),
+                    Seconds{watch_.time_s(started_)},
                     {}};
   if (waits_ != nullptr) progress.waiting = {waits_->lasted(), waits_->at_most()};
   engine_.progress_(progress);

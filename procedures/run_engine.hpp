@@ -37,9 +37,9 @@ struct Progress {
   std::size_t step = 0;  ///< index into the plan
   std::size_t steps = 0;
   std::string says;
-  Seconds started{0.0};    ///< when the run began, since the gyro's power-on as the record's times
-  Seconds elapsed{0.0};    ///< since then, on the bench's clock
+  Seconds elapsed{0.0};    ///< since the run began, on the bench's clock
   Seconds remaining{0.0};  ///< the plan's estimate, corrected as steps end
+  Seconds started{0.0};    ///< when the run began, since the gyro's power-on as the record's times
   /// For an instrument, or for the run log: the run fails when it has lasted too long.
   struct Waiting {
     Seconds lasted{0.0}, at_most{0.0};

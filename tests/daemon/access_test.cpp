@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
+#include <future>
 
 #include "drivers/file_descriptor.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -61,6 +65,41 @@ TEST(Names, OfUsersAndGroups) {
   const auto none = group_by_name("no such group");
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::kBadInput);
+}
+
+// Other users need root to be played; without it there are no rights to borrow.
+TEST(BorrowedRights, AreThoseOfTheUserForThisThreadAndNoLonger) {
+  if (geteuid() != 0) return;
+  const support::TemporaryFolder folder;
+  const auto file = folder.file("secret.json", "{}");
+  const auto reads = [&file] { return std::ifstream(file).good(); };
+  ASSERT_EQ(chmod(folder.path().c_str(), 0755), 0);
+  ASSERT_EQ(chmod(file.c_str(), 0640), 0);
+  constexpr uid_t kNobody = 65534;
+  constexpr gid_t kShared = 1;
+  ASSERT_EQ(chown(file.c_str(), 0, kShared), 0);
+  ASSERT_TRUE(reads());
+  {
+    std::promise<void> borrowed;
+    auto elsewhere = std::async(std::launch::async, [&] {
+      borrowed.get_future().wait();
+      return reads();
+    });
+    const BorrowedRights stranger({kNobody, {kNobody}});
+    borrowed.set_value();
+    EXPECT_TRUE(stranger.taken());
+    EXPECT_FALSE(reads());
+    EXPECT_TRUE(elsewhere.get()) << "the bench's thread keeps its own";
+  }
+  {
+    const BorrowedRights member({kNobody, {kNobody, kShared}});
+    EXPECT_TRUE(reads()) << "his groups count";
+  }
+  {
+    const BorrowedRights root({0, {0}});
+    EXPECT_TRUE(reads());
+  }
+  EXPECT_TRUE(reads());
 }
 
 }  // namespace

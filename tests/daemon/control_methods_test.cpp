@@ -64,9 +64,12 @@ TEST_F(ControlMethodsTest, ObserversReadOperatorsActOthersDoNeither) {
     EXPECT_TRUE(ask(method, json::object(), observer_).contains("result")) << method;
     EXPECT_EQ(refusal(method, json::object(), nobody_), RpcCode::kPermission) << method;
   }
-  for (const char* method : {"run", "remove", "pause", "resume", "abort", "answer"}) {
+  for (const char* method :
+       {"run", "remove", "move", "pause", "hold", "resume", "discard", "abort", "answer"}) {
     EXPECT_EQ(refusal(method, json::object(), observer_), RpcCode::kPermission) << method;
-    EXPECT_NE(refusal(method, json::object(), operator_), RpcCode::kPermission) << method;
+    const json allowed = ask(method, json::object(), operator_);
+    EXPECT_NE(allowed.value("/error/code"_json_pointer, 0), static_cast<int>(RpcCode::kPermission))
+        << method;
   }
   EXPECT_FALSE(methods_->forced());
   const json answer = ask("abort", {{"force", true}}, observer_);
@@ -80,6 +83,7 @@ TEST_F(ControlMethodsTest, SaysWhoAsksAndWhatItIs) {
   EXPECT_EQ(hello.at("protocol"), kProtocolVersion);
   EXPECT_EQ(hello.at("bench"), "simulated");
   EXPECT_EQ(hello.at("role"), "operator");
+  EXPECT_EQ(hello.at("store"), (folder_ / "store.db").string());
   const json idle = result("status");
   EXPECT_EQ(idle.at("state"), "idle");
   for (const char* none : {"run", "prompt", "values", "point", "last_run"}) {
@@ -108,6 +112,49 @@ TEST_F(ControlMethodsTest, QueuesWhatTheBenchCanDoAndNothingElse) {
   EXPECT_EQ(result("queue").at("jobs").size(), 1U);
   result("remove", {{"job", 1}});
   EXPECT_EQ(refusal("remove", {{"job", 1}}, operator_), RpcCode::kNotFound);
+}
+
+TEST_F(ControlMethodsTest, AProcedureIsAReadyOnesNameOrAFullPath) {
+  const std::string file = procedure(R"({"step": "average", "duration_s": 5, "segment": "a"})");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  for (const char* name : {"p.json", "./p.json", "../x/p.json", "p", ""}) {
+    EXPECT_EQ(refusal("run", {{"procedure", name}}, operator_), RpcCode::kBadInput) << name;
+  }
+  std::filesystem::current_path(before);
+  EXPECT_EQ(result("run", {{"procedure", "static-record"}}).at("job"), 1);
+  EXPECT_EQ(result("run", {{"procedure", file}}).at("job"), 2);
+}
+
+TEST_F(ControlMethodsTest, AQueueIsReorderedAndHeld) {
+  for (int i = 0; i < 3; ++i) {
+    result("run", {{"procedure", "static-record"}, {"keep_going", i == 2}});
+  }
+  result("move", {{"job", 3}, {"to", 1}});
+  const json jobs = result("queue").at("jobs");
+  EXPECT_EQ(jobs.at(0).at("job"), 3);
+  EXPECT_EQ(jobs.at(0).at("keep_going"), true);
+  EXPECT_EQ(jobs.at(1).at("keep_going"), false);
+  EXPECT_EQ(refusal("move", {{"job", 3}, {"to", 4}}, operator_), RpcCode::kNotFound);
+  EXPECT_EQ(refusal("move", {{"job", 9}, {"to", 1}}, operator_), RpcCode::kNotFound);
+  for (const json& wrong : {json{{"job", 3}}, json{{"job", 3}, {"to", 0}}, json{{"to", 1}}}) {
+    EXPECT_EQ(refusal("move", wrong, operator_), RpcCode::kInvalidParams) << wrong;
+  }
+  EXPECT_EQ(refusal("run", {{"procedure", "static-record"}, {"keep_going", 1}}, operator_),
+            RpcCode::kInvalidParams);
+  result("hold");
+  EXPECT_EQ(result("queue").at("held"), true);
+  EXPECT_THAT(result("queue").at("because").get<std::string>(), HasSubstr("asked for by"));
+  result("resume");
+  EXPECT_EQ(result("queue").at("held"), false);
+}
+
+TEST_F(ControlMethodsTest, RunsAreNumberedFromOne) {
+  for (const char* method : {"resume", "discard"}) {
+    for (const json& run : {json(0), json(-1), json(18446744073709551615U), json("1")}) {
+      EXPECT_EQ(refusal(method, {{"run", run}}, operator_), RpcCode::kInvalidParams) << run;
+    }
+  }
 }
 
 TEST_F(ControlMethodsTest, AJobIsForTheGyroThatItNamesElseForTheBenchs) {
@@ -224,7 +271,7 @@ TEST_F(ControlMethodsTest, AnInterruptedRunIsTakenUpOrGivenUp) {
   EXPECT_EQ(refusal("resume", {{"run", "1"}}, operator_), RpcCode::kInvalidParams);
   EXPECT_EQ(refusal("resume", {{"run", 1}}, observer_), RpcCode::kPermission);
 
-  desk_.hold();
+  EXPECT_FALSE(desk_.hold({"bob", 1001}));
   const json job = result("resume", {{"run", 1}});
   EXPECT_EQ(job["steps"], 1);
   EXPECT_EQ(job["gyro"], "FOG-42") << "the record's, not the bench's";

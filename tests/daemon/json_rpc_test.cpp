@@ -1,5 +1,6 @@
 #include "daemon/json_rpc.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -33,6 +34,9 @@ TEST(JsonRpc, ReadsARequestWithItsIdAsItCame) {
   EXPECT_EQ(request(R"({"jsonrpc":"2.0","id":"a\"b","method":"m"})").id, R"("a\"b")");
   EXPECT_EQ(request(R"({"jsonrpc":"2.0","id":null,"method":"m"})").id, "null");
   EXPECT_EQ(request(R"({"jsonrpc":"2.0","method":"m"})").id, "") << "a notification";
+  for (const char* id : {"0", "-5", "9223372036854775808", "18446744073709551615"}) {
+    EXPECT_EQ(request(fmt::format(R"({{"jsonrpc":"2.0","id":{},"method":"m"}})", id)).id, id);
+  }
   const RpcRequest with =
       request(R"( {"method":"run","params":{"procedure":"x"},"jsonrpc":"2.0"} )");
   EXPECT_EQ(with.params.at("procedure"), "x");
@@ -44,9 +48,11 @@ TEST(JsonRpc, RefusesWhatIsNoRequestAndKeepsTheIdWhenThereIsOne) {
   EXPECT_EQ(refusal("{\"id\":\"\xff\"}").error.code, RpcCode::kParse);
   EXPECT_EQ(refusal(std::string(10000, '[')).error.code, RpcCode::kParse);
   EXPECT_EQ(refusal(R"({"id":1,"id":2})").error.code, RpcCode::kParse);
-  for (const char* line : {"[]", "7", R"([{"jsonrpc":"2.0","id":1,"method":"status"}])",
-                           R"({"jsonrpc":"2.0","id":[1],"method":"m"})",
-                           R"({"jsonrpc":"2.0","id":true,"method":"m"})"}) {
+  for (const char* line :
+       {"[]", "7", R"([{"jsonrpc":"2.0","id":1,"method":"status"}])",
+        R"({"jsonrpc":"2.0","id":[1],"method":"m"})", R"({"jsonrpc":"2.0","id":true,"method":"m"})",
+        R"({"jsonrpc":"2.0","id":12345678901234567890123,"method":"m"})",
+        R"({"jsonrpc":"2.0","id":1.5,"method":"m"})"}) {
     EXPECT_EQ(refusal(line).error.code, RpcCode::kInvalidRequest) << line;
     EXPECT_EQ(refusal(line).id, "null") << line;
   }

@@ -302,13 +302,13 @@ TEST_F(KillMatrix, AJournalCutAnywhereIsReadUpToTheCut) {
     fs::remove(cut.string() + "-shm");
     const auto log = RunLogReader::open(cut);
     ASSERT_TRUE(log) << length << " of " << wal.size() << " bytes: " << log.error().message;
-    const auto interrupted = interrupted_run(**log, made);
+    const auto interrupted = interrupted_runs(**log, made);
     ASSERT_TRUE(interrupted) << interrupted.error().message;
     const std::size_t points = points_of(cut, 1).size();
     EXPECT_LE(points, before);
     before = points;
     ++cuts;
-    if (*interrupted && cuts % 10 == 0) {
+    if (!interrupted->empty() && cuts % 10 == 0) {
       const auto planned = plan_resumption(**log, 1, made);
       EXPECT_TRUE(planned) << planned.error().message;
     }

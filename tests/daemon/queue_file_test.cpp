@@ -27,7 +27,7 @@ class QueueFileTest : public testing::Test {
     enqueue(desk, Order{procedure, set});
   }
   void enqueue(RunDesk& desk, const Order& order) {
-    auto planned = plan_order(order, setup_, store_);
+    auto planned = plan_order(order, setup_, store_, {});
     ASSERT_TRUE(planned) << planned.error().message;
     desk.enqueue(order, std::move(*planned), {"alice", 1000});
   }
@@ -69,8 +69,8 @@ TEST_F(QueueFileTest, EachJobKeepsItsGyroAndOneWithoutTakesTheNewDaemons) {
   enqueue(desk, ready("static-record"), {});
   open()->update(desk);
   const auto kept = nlohmann::json::parse(support::read_text(file_));
-  EXPECT_EQ(kept[0]["gyro"], "FOG-42");
-  EXPECT_FALSE(kept[1].contains("gyro")) << "as in files of old";
+  EXPECT_EQ(kept["jobs"][0]["gyro"], "FOG-42");
+  EXPECT_FALSE(kept["jobs"][1].contains("gyro"));
   setup_.bench.gyro.serial_number = "FOG-7";
   RunDesk next;
   ASSERT_TRUE(load(next));
@@ -79,6 +79,47 @@ TEST_F(QueueFileTest, EachJobKeepsItsGyroAndOneWithoutTakesTheNewDaemons) {
   EXPECT_EQ(jobs[0].gyro, "FOG-42");
   EXPECT_EQ(jobs[1].gyro, "FOG-7");
   EXPECT_EQ(next.waiting().orders[0].first.gyro, "FOG-42") << "and the next file has it";
+}
+
+TEST_F(QueueFileTest, AHoldTheOrderAndWhatRunsAfterAFailureOutliveTheDaemon) {
+  RunDesk desk;
+  enqueue(desk, ready("coil-sweep"), {});
+  Order stubborn{ready("static-record"), {}};
+  stubborn.keep_going = true;
+  enqueue(desk, stubborn);
+  EXPECT_FALSE(desk.move(2, 1));
+  EXPECT_FALSE(desk.hold({"alice", 1000}));
+  open()->update(desk);
+  RunDesk next;
+  ASSERT_TRUE(load(next));
+  ASSERT_EQ(next.queue().size(), 2U);
+  EXPECT_EQ(next.queue()[0].procedure, "static-record");
+  EXPECT_TRUE(next.queue()[0].keep_going);
+  EXPECT_FALSE(next.queue()[1].keep_going);
+  EXPECT_THAT(next.view().held_because, testing::StartsWith("asked for by alice"));
+}
+
+TEST_F(QueueFileTest, AHoldOfAnEmptyQueueOutlivesTheDaemonUntilSomebodyGoesOn) {
+  RunDesk desk;
+  EXPECT_FALSE(desk.hold({"alice", 1000}));
+  open()->update(desk);
+  RunDesk next;
+  ASSERT_TRUE(load(next));
+  EXPECT_EQ(next.view().held_because, "asked for by alice");
+  EXPECT_FALSE(next.resume({"bob", 1001}));
+  open()->update(next);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+TEST_F(QueueFileTest, AFileOfAnEarlierVersionIsAList) {
+  folder_.file("store.db.queue", nlohmann::json::array({{{"procedure", ready("static-record")},
+                                                         {"set", nlohmann::json::object()},
+                                                         {"by", "alice"},
+                                                         {"uid", 1000}}})
+                                     .dump());
+  RunDesk desk;
+  ASSERT_TRUE(load(desk));
+  EXPECT_EQ(desk.queue().size(), 1U);
 }
 
 TEST_F(QueueFileTest, AnEmptyQueueLeavesNoFile) {
@@ -145,12 +186,15 @@ TEST_F(QueueFileTest, WhatCanNoLongerBePlannedIsLeftOut) {
 TEST_F(QueueFileTest, AFileThatIsNoneOfOursIsRefusedInOneLine) {
   for (const auto& [text, says] :
        {std::pair{"{", "store.db.queue"}, std::pair{"{}", "expected a list"},
-        std::pair{R"([{"by": "a", "uid": 1}])", "/0: expected procedure"},
-        std::pair{R"([{"by": 1, "uid": 1}])", "/0: expected procedure"},
+        std::pair{R"([{"by": "a", "uid": 1}])", "job 1: expected procedure"},
+        std::pair{R"([{"by": 1, "uid": 1}])", "job 1: expected procedure"},
+        std::pair{R"({"jobs": [], "hold": true})", "/hold: expected why"},
+        std::pair{R"([{"procedure": "p", "set": {}, "keep_going": 1, "by": "a", "uid": 1}])",
+                  "keep_going"},
         std::pair{R"([{"procedure": "p", "set": {}, "gyro": "a\nb", "by": "a", "uid": 1}])",
                   "perhaps gyro"},
-        std::pair{R"([{"procedure": "p", "set": {}, "gyro": 7, "by": "a", "uid": 1}])", "/0"},
-        std::pair{R"([{"takes_up": -1, "by": "a", "uid": 1}])", "/0"}}) {
+        std::pair{R"([{"procedure": "p", "set": {}, "gyro": 7, "by": "a", "uid": 1}])", "job 1"},
+        std::pair{R"([{"takes_up": -1, "by": "a", "uid": 1}])", "job 1"}}) {
     folder_.file("store.db.queue", text);
     RunDesk desk;
     const Status loaded = load(desk);

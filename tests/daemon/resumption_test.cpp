@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "daemon/run_log.hpp"
@@ -67,9 +68,9 @@ class ResumptionTest : public testing::Test {
 
   std::int64_t offered() {
     const auto log = RunLogReader::open(store_);
-    const auto run = interrupted_run(**log, setup_);
-    EXPECT_TRUE(run) << run.error().message;
-    return run && *run ? (*run)->run : 0;
+    const auto runs = interrupted_runs(**log, setup_);
+    EXPECT_TRUE(runs) << runs.error().message;
+    return runs && !runs->empty() ? runs->back().run : 0;
   }
 
   support::TemporaryFolder folder_;
@@ -91,18 +92,26 @@ TEST_F(ResumptionTest, GoesOnAtTheStepThatWasInterruptedWithTheRecordedProcedure
 }
 
 TEST_F(ResumptionTest, OnlyARunOfThisVeryBenchIsTakenUp) {
-  header_.bench_json += " ";
+  auto files = nlohmann::json::parse(setup_.bench_json);
+  auto bench = nlohmann::json::parse(files.at("simulated.json").get<std::string>());
+  bench["limits"]["run_time_maximum_s"] = 12345;
+  files["simulated.json"] = bench.dump();
+  header_.bench_json = files.dump();
   interrupt();
-  EXPECT_THAT(refusal(), HasSubstr("the bench's file, or one of its instruments', was another"));
+  EXPECT_THAT(refusal(), HasSubstr("simulated.json: /limits/run_time_maximum_s"));
+  header_.bench_json = setup_.bench_json + " ";  // the same in other letters
+  interrupt();
+  EXPECT_EQ(refusal(2), "taken up");
+  EXPECT_EQ(offered(), 2);
   header_.bench_json = setup_.bench_json;
   header_.scenario_json += " ";
   interrupt();
-  EXPECT_THAT(refusal(2), HasSubstr("another scenario"));
+  EXPECT_THAT(refusal(3), HasSubstr("another scenario"));
   header_.scenario_json = setup_.scenario_json;
   header_.bench = "factory";
   interrupt();
-  EXPECT_THAT(refusal(3), HasSubstr("it is of bench factory, expected simulated"));
-  EXPECT_THAT(refusal(4), HasSubstr("no run 4"));
+  EXPECT_THAT(refusal(4), HasSubstr("it is of bench factory, expected simulated"));
+  EXPECT_THAT(refusal(5), HasSubstr("no run 5"));
 }
 
 TEST_F(ResumptionTest, ADamagedRecordIsSaidToBeOne) {
@@ -181,12 +190,31 @@ TEST_F(ResumptionTest, TwoRunsNeverTakeUpTheSame) {
   EXPECT_THAT(refusal(3), HasSubstr("no run 3"));
 }
 
-TEST_F(ResumptionTest, TheLastRunOfTheBenchIsOfferedWhenNobodyEndedIt) {
+TEST_F(ResumptionTest, ARunThatNobodyEndedIsOfferedWhateverCameAfterIt) {
   interrupt();
-  EXPECT_EQ(offered(), 1);
+  interrupt();
   const auto log = RunLog::open(store_);
+  ASSERT_TRUE((*log)->begin_run(header_, {}));
+  ASSERT_TRUE(
+      (*log)->end_run({procedures::RunOutcome::kCompleted, "all steps done", true, "", {}}));
+  EXPECT_EQ(offered(), 2) << "a dry run into the same run log, above all";
+  ASSERT_TRUE((*log)->give_up(2, "given up by alice"));
+  EXPECT_EQ(offered(), 1);
   ASSERT_TRUE((*log)->give_up(1, "given up by alice"));
   EXPECT_EQ(offered(), 0);
+}
+
+TEST_F(ResumptionTest, WhatHasMeasuredNothingAndHasNoStepLeftIsBegunAnew) {
+  {
+    const auto log = RunLog::open(store_);
+    ASSERT_TRUE((*log)->begin_run(header_, {}));
+    for (const char* path : {"1", "2"}) {
+      ASSERT_TRUE((*log)->step_started(path, "a step", 0.0));
+      ASSERT_TRUE((*log)->step_ended(path, 1.0, ""));
+    }
+    ASSERT_TRUE((*log)->end_run({procedures::RunOutcome::kFailed, "no points", true, "", {}}));
+  }
+  EXPECT_THAT(refusal(1), HasSubstr("it has measured nothing, and no step is left of it"));
 }
 
 TEST_F(ResumptionTest, WhatAnotherProgramWritesIsNotInterrupted) {

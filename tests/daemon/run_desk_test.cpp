@@ -188,6 +188,59 @@ TEST_F(RunDeskTest, PausesBeforeTheNextStep) {
   EXPECT_EQ(wait_for_end_of(job).last_run->outcome, "completed");
 }
 
+TEST_F(RunDeskTest, APauseThatFindsNoStepLeftHoldsTheQueueInstead) {
+  constexpr auto kAsksLast = R"({"name": "asks_last", "steps": [
+    {"step": "set_temperature", "mode": "off"},
+    {"step": "prompt", "text": "Is it there?"}]})";
+  const std::uint64_t first = enqueue(kAsksLast), second = enqueue(kMeasures);
+  const DeskView asking = wait_for_question();
+  EXPECT_FALSE(desk_.pause(alice_));
+  EXPECT_TRUE(desk_.view().run->pauses_after);
+  EXPECT_FALSE(desk_.answer(asking.question->prompt, true, alice_));
+  const DeskView held = wait_for_end_of(first);
+  EXPECT_EQ(held.last_run->outcome, "completed");
+  EXPECT_THAT(held.held_because, HasSubstr("alice paused run 1, which ended first"));
+  EXPECT_EQ(held.jobs, 1U);
+  EXPECT_FALSE(desk_.resume(bob_));
+  EXPECT_EQ(wait_for_end_of(second).held_because, "");
+}
+
+TEST_F(RunDeskTest, TheQueueIsHeldAfterTheRunUnderWayAndTheRunGoesOn) {
+  const std::uint64_t first = enqueue(kAsks), second = enqueue(kMeasures);
+  const DeskView asking = wait_for_question();
+  EXPECT_FALSE(desk_.hold(bob_));
+  EXPECT_FALSE(desk_.answer(asking.question->prompt, true, alice_));
+  const DeskView held = wait_for_end_of(first);
+  EXPECT_EQ(held.last_run->points, 1U);
+  EXPECT_THAT(held.held_because, HasSubstr("asked for by bob"));
+  EXPECT_FALSE(desk_.resume(alice_));
+  wait_for_end_of(second);
+  leave();
+  EXPECT_TRUE(record_.has_event("hold the queue, by bob"));
+}
+
+TEST_F(RunDeskTest, AHoldIsTakenBackWhileTheRunIsUnderWay) {
+  enqueue(kAsks);
+  const std::uint64_t second = enqueue(kMeasures);
+  const DeskView asking = wait_for_question();
+  EXPECT_FALSE(desk_.hold(bob_));
+  EXPECT_FALSE(desk_.resume(bob_));
+  EXPECT_TRUE(desk_.resume(bob_)) << "nothing is held any more";
+  EXPECT_FALSE(desk_.answer(asking.question->prompt, true, alice_));
+  wait_for_end_of(second);
+}
+
+TEST_F(RunDeskTest, ARunThatWasToMeasureAndDidNotHasFailed) {
+  const std::uint64_t job = enqueue(R"({"name": "nothing", "steps": [
+    {"step": "set_temperature", "mode": "off"},
+    {"step": "wait", "duration_s": 30, "segment": "a", "window_s": 60}]})");
+  const DeskView ended = wait_for_end_of(job);
+  EXPECT_EQ(ended.last_run->outcome, "failed");
+  EXPECT_THAT(ended.last_run->reason, HasSubstr("nothing was measured"));
+  EXPECT_TRUE(ended.last_run->safe_state_reached);
+  EXPECT_FALSE(ended.last_run->resumable) << "no step is left of it";
+}
+
 TEST_F(RunDeskTest, ClosingAbortsTheRunAndBeginsNoOther) {
   enqueue(kAsks);
   enqueue(kMeasures);
@@ -223,14 +276,14 @@ TEST_F(RunDeskTest, TheQueueHasAnEndAndJobsCanBeTakenOut) {
   wait_for_question();
   const PlannedProcedure procedure = planned(kMeasures);
   std::uint64_t last = 0;
-  for (std::size_t i = 0; i < RunDesk::kMostJobs; ++i) {
+  for (std::size_t i = 0; i < JobQueue::kMostJobs; ++i) {
     last = std::get<std::uint64_t>(desk_.enqueue({}, procedure, alice_));
   }
   const auto full = desk_.enqueue({}, procedure, alice_);
   EXPECT_EQ(std::get<RpcError>(full).code, RpcCode::kQueueFull);
   EXPECT_FALSE(desk_.remove(last, alice_));
   EXPECT_EQ(desk_.remove(last, alice_)->code, RpcCode::kNotFound);
-  EXPECT_EQ(desk_.queue().size(), RunDesk::kMostJobs - 1);
+  EXPECT_EQ(desk_.queue().size(), JobQueue::kMostJobs - 1);
 }
 
 TEST(RunDesk, APersonResumesWhatAnInterlockHasPaused) {

@@ -71,9 +71,9 @@ TEST(ServeDeathTest, AnAbortThatAnInstrumentHoldsUpIsForcedWhenItsTimeIsOver) {
               "safe state; a new start begins with it\n$");
   const auto log = RunLogReader::open(store);
   ASSERT_TRUE(log) << log.error().message;
-  const auto left = interrupted_run(**log, *setup);
-  ASSERT_TRUE(left && *left) << "the next start offers it";
-  EXPECT_EQ((*left)->run, 1);
+  const auto left = interrupted_runs(**log, *setup);
+  ASSERT_TRUE(left && left->size() == 1) << "the next start offers it";
+  EXPECT_EQ(left->front().run, 1);
 }
 
 }  // namespace

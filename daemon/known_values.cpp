@@ -1,0 +1,22 @@
+#include "daemon/known_values.hpp"
+
+#include <cmath>
+
+#include "daemon/store.hpp"
+
+namespace fogbench::daemon {
+
+std::vector<KnownValue> KnownValues::missing(const procedures::MonitorRow& row) {
+  std::vector<KnownValue> missing;
+  for (const MonitorColumn& column : monitor_columns()) {
+    const double value = column.value(row);
+    if (std::isfinite(value)) {
+      last_[column.name] = {column.name, value, row.time_s};
+    } else if (const auto known = last_.find(column.name); known != last_.end()) {
+      missing.push_back(known->second);
+    }
+  }
+  return missing;
+}
+
+}  // namespace fogbench::daemon
