@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "drivers/named_error.hpp"
 
@@ -34,7 +36,11 @@ Status ScpiTurntable::rotate_to(Degree azimuth) {
                            fmt::format("azimuth {} deg is outside {} ... {} deg", azimuth.value,
                                        device_.minimum, device_.maximum));
   }
-  if (Status done = dialogue_.set(azimuth.value); !done) return done;
+  const double step = device_.resolution;
+  const double rounded = step > 0 ? std::round(azimuth.value / step) * step : azimuth.value;
+  if (Status done = dialogue_.set(std::clamp(rounded, device_.minimum, device_.maximum)); !done) {
+    return done;
+  }
   const Clock::Instant give_up = clock_.now() + kPatience * move_time_;
   clock_.sleep_for(from_seconds(device_.settle.count()));
   for (;;) {

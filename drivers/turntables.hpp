@@ -21,7 +21,8 @@ class ScpiTurntable final : public Turntable {
 
   Status begin() override { return dialogue_.begin(); }
   Result<std::string> identity() override { return dialogue_.identity(); }
-  /// kTimeout when it is not there after three times the usual time of a move.
+  /// The azimuth is rounded to the motor's resolution first. kTimeout when it is not there after
+  /// three times the usual time of a move.
   Status rotate_to(Degree azimuth) override;
   Result<Degree> azimuth() override;
 

@@ -215,6 +215,12 @@ std::string probes_of(const Subject& subject) {
   drivers::VirtualClock clock;
   std::string said = rows_of(drivers::probe(bench.thermostat.device, registers, clock)) +
                      rows_of(drivers::probe(bench.magnetometer.device, reports));
+  for (const auto& scpi :
+       {bench.coil_horizontal.device, with_a_motor(bench).turntable.device.value()}) {
+    support::FakeScpi far;
+    support::FakeMessages messages(far);
+    said += rows_of(drivers::probe(scpi, messages)) + fmt::format("{}", fmt::join(far.sent, "\n"));
+  }
   const config::FrameDevice& gyro = bench.gyro.device;
   std::vector<std::uint8_t> frame(gyro.frame_bytes);
   for (std::size_t i = 0; i < frame.size(); ++i) frame[i] = pattern(i);
