@@ -32,15 +32,19 @@ class ControlTest : public FogbenchTest {
     return command(arguments, "fogbenchd");
   }
   /// Serving when it returns.
-  std::unique_ptr<Process> serve(const std::vector<std::string>& more = {},
-                                 const Process::Setup& setup = {}) const {
-    auto daemon = std::make_unique<Process>(daemon_command(more), setup);
+  static std::unique_ptr<Process> started(const std::vector<std::string>& daemon_command,
+                                          const Process::Setup& setup = {}) {
+    auto daemon = std::make_unique<Process>(daemon_command, setup);
     for (int i = 0; i < 300; ++i) {
       if (fogbench({"status"}).status == 0) return daemon;
       std::this_thread::sleep_for(std::chrono::milliseconds{100});
     }
     ADD_FAILURE() << "the daemon does not serve: " << daemon->wait(std::chrono::seconds{1}).err;
     return daemon;
+  }
+  std::unique_ptr<Process> serve(const std::vector<std::string>& more = {},
+                                 const Process::Setup& setup = {}) const {
+    return started(daemon_command(more), setup);
   }
   static nlohmann::json status() { return json({"status", "--json"}); }
   /// The first status of which `holds` is true.

@@ -153,9 +153,8 @@ TEST_F(OperatorsTest, AnInterruptedRunIsOfferedWhateverCameAfterItOrWhatIsInTheW
   bench["limits"]["run_time_maximum_s"] = 12345;
   const std::string changed = (config / "benches/simulated.json").string();
   std::ofstream(changed) << bench;
-  daemon = std::make_unique<Process>(
-      command({"--bench", changed, "--store", store(), "--speed", "20"}, "fogbenchd"));
-  const auto offered = wait_until([](const nlohmann::json& now) { return now.is_object(); });
+  daemon = started(command({"--bench", changed, "--store", store(), "--speed", "20"}, "fogbenchd"));
+  const auto offered = status();
   expect_says(offered["interrupted"]["obstacle"].get<std::string>(), "run_time_maximum_s");
   const Finished shown = fogbench({"status"});
   expect_says(shown.out,
