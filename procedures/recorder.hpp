@@ -24,7 +24,7 @@ struct Continuation {
   std::string first_step;  ///< path of the first step that is left of it
   std::vector<Repeated> repeated;
   std::size_t points = 0;  ///< that are measured already, and not anew
-  std::string says;  ///< for the record
+  std::string says;        ///< for the record
   std::string data_json;
 };
 
