@@ -131,6 +131,12 @@ Status fit_coloured(FitWork& work) {
     if (!found) return found.error();
     last = std::move(*found);
     work.beta = last->beta.head(work.free());
+    if (work.inner.size() == 0) continue;
+    // The joint solution would move the inner parameters too, far where one stands at its bound or
+    // is hardly seen. They stay where the search left them, and the coefficients are theirs.
+    Result<GlsResult> held = gls(*shapes, system.x.leftCols(work.free()), system.y);
+    if (!held) return held.error();
+    work.beta = held->beta;
   }
   work.covariance = last->covariance;
   work.coverage = last->coverage_factor;

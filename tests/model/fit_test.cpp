@@ -154,6 +154,28 @@ TEST(Fit, ColouredNoiseIsEstimatedWithTheCoefficients) {
   EXPECT_EQ(found->whitened.size(), found->residual.size());
 }
 
+/// Loops of noise: no term of any kind is there but the bias.
+Table noise_loops(unsigned seed) {
+  Table table = field_sweep(3);
+  simulate(table, model_of({term("bias", 0.2)}), 0.003, seed);
+  return table;
+}
+
+// Where nothing identifies the width it runs to its bound, and there the joint solution would move
+// it much further: its coefficients are no solution at the width that is kept.
+TEST(Fit, AnInnerParameterAtItsBoundLeavesNoMoreThanTheTermsWithoutIt) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const Table table = noise_loops(seed);
+    const auto before = fit(table, model_of({term("bias"), term("magnetic_linear_z")}), {});
+    const auto after =
+        fit(table,
+            model_of({term("bias"), term("magnetic_linear_z"), term("magnetic_hysteresis_z")}), {});
+    ASSERT_TRUE(before && after);
+    EXPECT_TRUE(after->coloured);
+    EXPECT_LT(after->rms, 1.1 * before->rms) << seed;
+  }
+}
+
 TEST(Fit, HeldCoefficientsStayAndTheOthersAdapt) {
   Table table;
   table.set_column("field_x_ut", {0, 100, 200, 300});
