@@ -12,6 +12,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "daemon/session.hpp"
 #include "drivers/crc.hpp"
@@ -277,12 +278,20 @@ std::string ports_of(const Subject& subject) {
   if (gyro) (void)(*gyro)->read_some({&byte, 1});  // the first use opens it
   struct termios2 speed {};
   ioctl(line.fd(), TCGETS2, &speed);
-  const support::Pty rtu;
+  support::Pty rtu;
   const auto thermostat =
       drivers::open_port(bench.thermostat.device, "rtu:" + rtu.path() + ":9600", clock);
-  std::uint16_t word = 0;
-  if (thermostat) (void)(*thermostat)->read_registers(0, {&word, 1});
-  return said + fmt::format("{} baud, unit {:02x}", speed.c_ospeed, fmt::join(rtu.receive(1), ""));
+  std::string unit;
+  if (thermostat) {
+    std::thread asks([&transport = **thermostat] {
+      std::uint16_t word = 0;
+      (void)transport.read_registers(0, {&word, 1});
+    });
+    unit = rtu.receive(1);
+    rtu.unplug();  // an answer that nobody will send is not waited for
+    asks.join();
+  }
+  return said + fmt::format("{} baud, unit {:02x}", speed.c_ospeed, fmt::join(unit, ""));
 }
 
 /// Keys that are for people: they are in the record as they were written.

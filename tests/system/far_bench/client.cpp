@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "tests/support/source_tree.hpp"
 
@@ -72,7 +74,11 @@ std::unique_ptr<Process> FarBench::daemon(const std::vector<std::string>& enviro
     command.insert(command.end(), procedures.begin(), procedures.end());
   }
   Process::Setup setup{environment, {}};
-  setup.environment.push_back("LD_PRELOAD=" + built("hid_stand_in.so"));
+  // To the loader a blank ends a path, and the clone may lie below a folder with one in its name.
+  const std::string stand_in = path("hid_stand_in.so");
+  std::error_code is_there_already;
+  std::filesystem::create_symlink(built("hid_stand_in.so"), stand_in, is_there_already);
+  setup.environment.push_back("LD_PRELOAD=" + stand_in);
   // Other benches have instruments of the same names.
   setup.environment.push_back("FOGBENCH_LOCKS=" + folder_.path().string());
   setup.environment.push_back("FOGBENCH_TEST_HID=" + path("magnetometer"));
