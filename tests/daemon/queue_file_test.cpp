@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -29,7 +30,7 @@ class QueueFileTest : public testing::Test {
   void enqueue(RunDesk& desk, const Order& order) {
     auto planned = plan_order(order, setup_, store_, {});
     ASSERT_TRUE(planned) << planned.error().message;
-    desk.enqueue(order, std::move(*planned), {"alice", 1000});
+    desk.enqueue(order, std::move(*planned), {"alice", geteuid()});
   }
   std::string ready(const std::string& name) const {
     return (tests::source_tree() / "config/procedures" / (name + ".json")).string();
@@ -59,7 +60,7 @@ TEST_F(QueueFileTest, WhatWaitsOutlivesTheDaemonAndIsHeld) {
   EXPECT_EQ(waiting[0].first.procedure, ready("coil-sweep"));
   EXPECT_EQ(waiting[0].first.set, desk.waiting().orders[0].first.set);
   EXPECT_EQ(waiting[1].second.name, "alice");
-  EXPECT_EQ(waiting[1].second.uid, 1000U);
+  EXPECT_EQ(waiting[1].second.uid, geteuid());
   EXPECT_THAT(next.view().held_because, testing::StartsWith("the daemon was started anew"));
 }
 
@@ -88,7 +89,7 @@ TEST_F(QueueFileTest, AHoldTheOrderAndWhatRunsAfterAFailureOutliveTheDaemon) {
   stubborn.keep_going = true;
   enqueue(desk, stubborn);
   EXPECT_FALSE(desk.move(2, 1));
-  EXPECT_FALSE(desk.hold({"alice", 1000}));
+  EXPECT_FALSE(desk.hold({"alice", geteuid()}));
   open()->update(desk);
   RunDesk next;
   ASSERT_TRUE(load(next));
@@ -101,7 +102,7 @@ TEST_F(QueueFileTest, AHoldTheOrderAndWhatRunsAfterAFailureOutliveTheDaemon) {
 
 TEST_F(QueueFileTest, AHoldOfAnEmptyQueueOutlivesTheDaemonUntilSomebodyGoesOn) {
   RunDesk desk;
-  EXPECT_FALSE(desk.hold({"alice", 1000}));
+  EXPECT_FALSE(desk.hold({"alice", geteuid()}));
   open()->update(desk);
   RunDesk next;
   ASSERT_TRUE(load(next));
@@ -115,7 +116,7 @@ TEST_F(QueueFileTest, AFileOfAnEarlierVersionIsAList) {
   folder_.file("store.db.queue", nlohmann::json::array({{{"procedure", ready("static-record")},
                                                          {"set", nlohmann::json::object()},
                                                          {"by", "alice"},
-                                                         {"uid", 1000}}})
+                                                         {"uid", geteuid()}}})
                                      .dump());
   RunDesk desk;
   ASSERT_TRUE(load(desk));
@@ -128,7 +129,7 @@ TEST_F(QueueFileTest, AnEmptyQueueLeavesNoFile) {
   enqueue(desk, ready("static-record"), {});
   file.update(desk);
   EXPECT_TRUE(std::filesystem::exists(file_));
-  EXPECT_FALSE(desk.remove(1, {"alice", 1000}));
+  EXPECT_FALSE(desk.remove(1, {"alice", geteuid()}));
   file.update(desk);
   EXPECT_FALSE(std::filesystem::exists(file_));
   RunDesk next;

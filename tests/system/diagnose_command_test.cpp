@@ -95,7 +95,7 @@ TEST_F(DiagnoseCommandTest, ProposedCommandWorksAsItStands) {
   EXPECT_NE(next.find("-o wider.json"), std::string::npos) << next;
   const Finished done =
       support::run({"/bin/sh", "-c",
-                    fmt::format("cd {} && PATH={}:$PATH && {}", path(""), program_folder, next)});
+                    fmt::format("cd {} && PATH='{}':$PATH && {}", path(""), program_folder, next)});
   EXPECT_EQ(done.status, 0) << next << "\n" << done.err;
   EXPECT_TRUE(std::filesystem::exists(path("wider.json")));
   const auto again =

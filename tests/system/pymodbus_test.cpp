@@ -128,9 +128,11 @@ TEST(Pymodbus, UnderstandsOurDriverOverTcp) {
   const config::TcpConnection connection{"127.0.0.1", ntohs(at.sin_port)};
   const support::Process process(server("tcp", std::to_string(connection.port)));
   drivers::SteadyClock clock;
-  const auto thermostat = reach(connection, clock);
-  ASSERT_TRUE(thermostat);
-  expect_understood(*thermostat);
+  {
+    const auto thermostat = reach(connection, clock);
+    ASSERT_TRUE(thermostat);
+    expect_understood(*thermostat);
+  }
   expect_refused(drivers::open_modbus(connection, 1, clock));
 }
 

@@ -46,7 +46,7 @@ class ServiceTest : public FogbenchTest {
   /// What bash offers after each of these lines, by the program's own completion.
   static std::vector<std::set<std::string>> offered(const std::string& program,
                                                     const std::vector<std::string>& lines) {
-    std::string script = fmt::format("PATH={0}:$PATH; source <({1} --completion) || exit\n",
+    std::string script = fmt::format("PATH='{0}':$PATH; source <({1} --completion) || exit\n",
                                      tests::build_tree().string(), program);
     for (const std::string& line : lines) {
       script += fmt::format(

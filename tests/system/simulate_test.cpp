@@ -128,7 +128,7 @@ TEST_F(SimulateTest, WritesABenchThatMeetsIt) {
   // Its gyro is looked at as this bench runs it, not as its device file says.
   const Finished gyro = fogbench({"device", "probe", "gyro", "--bench", file});
   EXPECT_EQ(gyro.status, 0) << gyro.err;
-  EXPECT_TRUE(std::regex_search(gyro.out, std::regex("expected about 1[0-9]{3};"))) << gyro.out;
+  EXPECT_TRUE(std::regex_search(gyro.out, std::regex("expected about [0-9]{4,5};"))) << gyro.out;
 
   EXPECT_EQ(interrupt(bench).status, 0);
   EXPECT_FALSE(fs::exists(fs::path(tty).parent_path())) << "nothing stays behind";
