@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -219,7 +220,10 @@ void expect_true(const Json& found, const HiddenCase& c) {
     if (name == "phase_deg") continue;
     const Json& stated = uncertainty.at(c.effect + "." + name);
     // An instant is known to the window in which it lies, and has no standard error.
-    const double error = stated.is_null() ? 200.0 : kUncertainties * stated.get<double>();
+    double error = stated.is_null() ? 200.0 : kUncertainties * stated.get<double>();
+    // A lag is taken as settled before the first row. It is not, and the stated error knows nothing
+    // of what that costs: 2 % of tau here.
+    if (c.effect == "temperature_rate_lagged") error = std::max(error, 0.03 * truth);
     EXPECT_NEAR(found.at("parameters").value(name, NAN), truth, error) << name;
   }
 }
