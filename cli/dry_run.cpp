@@ -11,6 +11,8 @@
 #include "cli/output.hpp"
 #include "cli/progress_line.hpp"
 #include "cli/run_report.hpp"
+#include "config/model_file.hpp"
+#include "config/paths.hpp"
 #include "daemon/abort_on_signal.hpp"
 #include "daemon/access.hpp"
 #include "daemon/run_options.hpp"
@@ -68,6 +70,14 @@ const char* model_for(const procedures::Plan& plan) {
   return swept ? "magnetic" : "thermal";
 }
 
+/// Whether there is a point for each of the model's terms.
+bool can_be_fitted(const std::string& model, std::size_t points) {
+  const auto file = config::find_config("models", model);
+  if (!file) return false;
+  const auto read = config::load_model(*file);
+  return read && points >= read->terms.size();
+}
+
 Status print_results(const std::filesystem::path& store, const procedures::Plan& plan,
                      const procedures::RunSummary& summary, const DryRunOptions& options) {
   auto reader = daemon::RunLogReader::open(store);
@@ -87,8 +97,11 @@ Status print_results(const std::filesystem::path& store, const procedures::Plan&
   if (summary.points == 0) return {};
   if (summary.end.outcome != RunOutcome::kCompleted) named += " --unfinished";
   fmt::print("      fogbench export {0}{1} -o run-{0}.csv\n", summary.run, named);
-  fmt::print("      fogbench fit {0}{1} --model {2} -o run-{0}-{2}.json\n", summary.run, named,
-             model_for(plan));
+  const std::string model = model_for(plan);
+  if (can_be_fitted(model, summary.points)) {
+    fmt::print("      fogbench fit {0}{1} --model {2} -o run-{0}-{2}.json\n", summary.run, named,
+               model);
+  }
   return {};
 }
 
