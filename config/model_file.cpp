@@ -1,5 +1,7 @@
 #include "config/model_file.hpp"
 
+#include <algorithm>
+
 #include "config/describe_model.hpp"
 
 namespace fogbench::config {
@@ -32,8 +34,27 @@ ordered_json Codec<Covariance>::write(const Covariance& covariance) {
   return Codec<std::vector<std::vector<double>>>::write(covariance.rows);
 }
 
+namespace {
+
+/// "sensitivity(Supply_v)": a form of effect and the column that it acts through.
+bool is_form_of_column(std::string_view effect) {
+  const std::size_t open = effect.find('(');
+  if (open == std::string_view::npos || !effect.ends_with(')') || open + 2 >= effect.size()) {
+    return false;
+  }
+  const std::string_view column = effect.substr(open + 1, effect.size() - open - 2);
+  return is_identifier(effect.substr(0, open)) &&
+         std::all_of(column.begin(), column.end(), [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                  c == '_';
+         });
+}
+
+}  // namespace
+
 bool check(const Place& at, const ModelTerm& t) {
-  if (!is_identifier(t.effect)) return (at / "effect").wrong(kIdentifier);
+  if (!is_identifier(t.effect) && !is_form_of_column(t.effect))
+    return (at / "effect").wrong(kIdentifier);
   if (t.coefficient && !t.coefficients.empty()) {
     return (at / "coefficients").fail("stands beside \"coefficient\"; expected one of them");
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "model/fit_work.hpp"
 #include "model/gls.hpp"
 #include "model/inner_search.hpp"
+#include "model/row_order.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -64,6 +66,14 @@ Eigen::MatrixXd joint_covariance(const LinearFit& fit, Eigen::Index free, Eigen:
   for (const Eigen::Index i : independent) chosen.push_back(place[static_cast<std::size_t>(i)]);
   covariance(chosen, chosen) = inverse;
   return covariance;
+}
+
+void warn_of_calendar(FitWork& work) {
+  const std::vector<std::string> needed = work.design.signals_needed();
+  const bool counts =
+      std::find(needed.begin(), needed.end(), "time_since_power_on_s") != needed.end();
+  if (!counts || !has_calendar_time(work.signals)) return;
+  work.result.warnings.emplace_back(kCalendarNote);
 }
 
 Status fit_independent(FitWork& work) {
@@ -252,6 +262,7 @@ Result<FitResult> fit(const Table& table, const config::ModelFile& model,
     fill_independent_noise(work);
   }
   fill_estimates(work);
+  warn_of_calendar(work);
   warn_of_correlation(work.result);
   warn_of_little_evidence(work.result);
   work.result.fitted = fitted_model(work);

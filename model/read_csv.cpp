@@ -17,29 +17,11 @@
 #include "model/condense.hpp"
 #include "model/csv_fields.hpp"
 #include "model/line_reader.hpp"
+#include "model/measurement_columns.hpp"
 #include "model/table.hpp"
 
 namespace fogbench::model {
 namespace {
-
-/// The measurement table's columns of numbers: text in one of them is an error.
-constexpr std::array<std::string_view, 17> kMeasurementColumns = {"rate_deg_per_h",
-                                                                  "time_s",
-                                                                  "duration_s",
-                                                                  "temperature_c",
-                                                                  "ambient_c",
-                                                                  "rate_std_error_deg_per_h",
-                                                                  "heater_w",
-                                                                  "field_x_ut",
-                                                                  "field_y_ut",
-                                                                  "field_z_ut",
-                                                                  "azimuth_deg",
-                                                                  "temperature_rate_c_per_h",
-                                                                  "coil_current_a",
-                                                                  "sigma_deg_per_h",
-                                                                  "temperature_gradient_c",
-                                                                  "current_horizontal_a",
-                                                                  "current_vertical_a"};
 
 /// Reads "-12.345" from the front of a line, correctly rounded: up to 15 digits are exact in a
 /// double, and so is the power of ten, which leaves one rounding. Returns where it stopped, or null
@@ -210,9 +192,7 @@ class CsvReader {
     if (name.empty()) return Kind::kIgnored;
     if (name == "run") return Kind::kRun;
     if (name == "segment") return Kind::kSegment;
-    const bool measured = std::find(kMeasurementColumns.begin(), kMeasurementColumns.end(), name) !=
-                          kMeasurementColumns.end();
-    return measured ? Kind::kNumber : Kind::kOther;
+    return is_measurement_column(name) ? Kind::kNumber : Kind::kOther;
   }
 
   Status read_rows() {

@@ -15,6 +15,8 @@ namespace {
 constexpr std::array<std::string_view, 3> kFields = {"field_x_ut", "field_y_ut", "field_z_ut"};
 constexpr std::array<std::string_view, 2> kCurrents = {"current_horizontal_a",
                                                        "current_vertical_a"};
+/// A year: no gyro is measured that long after power-on, and 1971 is over.
+constexpr double kLongestSincePowerOn_s = 3.15e7;
 /// Half of the window of a derived temperature rate. Long enough that 1 mK of sensor noise stays
 /// below 0.1 degC/h, short against the thermostat's ramps.
 constexpr double kRateHalfWindow_s = 30.0;
@@ -43,6 +45,20 @@ class SlidingLine {
   double origin_;
   double n_ = 0, u_ = 0, uu_ = 0, y_ = 0, uy_ = 0;
 };
+
+/// Within each run: its stamps, or the time since its first row where they are a calendar's
+/// (seconds since 1970), which does not tell when the power came on.
+std::vector<double> since_power_on(std::vector<double> time_s,
+                                   const std::vector<double>& since_start_s,
+                                   const std::vector<Signals::RunRange>& runs) {
+  for (const Signals::RunRange& run : runs) {
+    for (std::size_t row = run.begin; row < run.end; ++row) {
+      if (time_s[row] - since_start_s[row] > kLongestSincePowerOn_s)
+        time_s[row] = since_start_s[row];
+    }
+  }
+  return time_s;
+}
 
 }  // namespace
 
@@ -115,7 +131,7 @@ bool Signals::has_both_currents() const {
 bool Signals::available(std::string_view name) const {
   if (has_numbers(name)) return true;
   if (name == "duration_s" || name == "run_index") return true;
-  if (name == "time_since_start_s") return has_numbers("time_s");
+  if (name == "time_since_start_s" || name == "time_since_power_on_s") return has_numbers("time_s");
   if (name == "temperature_rate_c_per_h") {
     return has_numbers("time_s") && has_numbers("temperature_c");
   }
@@ -135,7 +151,7 @@ std::vector<std::string> Signals::missing_for(const EffectInfo& info) const {
     if (available(name)) continue;
     if (name == "coil_heat") {
       missing.emplace_back("coil_current_a");
-    } else if (name == "time_since_start_s") {
+    } else if (name == "time_since_start_s" || name == "time_since_power_on_s") {
       missing.emplace_back("time_s");
     } else if (name == "temperature_acceleration_c_per_h2") {
       missing.emplace_back(available("time_s") ? "temperature_rate_c_per_h" : "time_s");
@@ -182,6 +198,10 @@ Signals::Values Signals::derive(std::string_view name) const {
   }
   if (name == "coil_heat") return coil_heat();
   if (name == "time_since_start_s") return time_since_start();
+  if (name == "time_since_power_on_s") {
+    const View time = whole("time_s");
+    return since_power_on({time.begin(), time.end()}, time_since_start(), runs());
+  }
   if (name == "run_index") return run_index();
   return Values(table_.rows(), name == "duration_s" ? 0.0 : kMissing);
 }

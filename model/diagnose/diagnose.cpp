@@ -10,10 +10,13 @@
 
 #include "model/design.hpp"
 #include "model/diagnose/adequacy.hpp"
+#include "model/diagnose/formula_search.hpp"
 #include "model/diagnose/heldout.hpp"
 #include "model/diagnose/next_measurement.hpp"
+#include "model/diagnose/thermometer.hpp"
 #include "model/diagnose/verdict_text.hpp"
 #include "model/diagnose/working_table.hpp"
+#include "model/row_order.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -77,6 +80,9 @@ config::ModelFile extended_by(config::ModelFile model, const Library& library,
   for (const Found& f : found) {
     const Candidate& candidate = library.candidates[f.candidate];
     for (config::ModelTerm term : candidate.terms) {
+      const bool stands = std::any_of(model.terms.begin(), model.terms.end(),
+                                      [&](const auto& t) { return t.effect == term.effect; });
+      if (stands) continue;
       if (candidate.parameter) {
         term.parameters[name_of_parameter(candidate)] = f.inner;
       }
@@ -118,14 +124,16 @@ class Work {
     table_ = std::move(*table);
     d_.table = table_.bench();
     d_.rows_per_bin = table_.rows_per_bin();
+    d_.notes = table_.notes();
     d_.false_alarm_rate = options_.false_alarm_rate;
 
     tell("fitting the model and looking where it fails", 0.05);
-    auto before = compare(d_.table, model_, {}, options_.seed);
+    auto before = compare(table_.bench_with_history(), model_, {}, options_.seed);
     if (!before) return before.error();
     d_.before = std::move(*before);
 
     const Signals signals(table_.fine(), model_.reference_temperature_c);
+    if (has_calendar_time(signals)) d_.notes.emplace_back(kCalendarNote);
     config::ModelFile searched = d_.before.fit.fitted;
     if (table_.has_quiet_record()) searched.terms.push_back(quiet_bias());
     const auto base = base_of(table_, signals, searched);
@@ -153,6 +161,7 @@ class Work {
 
     tell("refitting with what was found", 0.8);
     climb_ladder(*library, found.found);
+    doubt_the_thermometer(found);
 
     tell("looking for what has no name", 0.9);
     const MatrixXd last = base_with(input_of_search, found.found);
@@ -168,6 +177,13 @@ class Work {
     const Adequacy adequacy =
         check_adequacy(*shapes, last, base->y, make_smooth_library(source), options_.seed + 77);
     conclude(found, adequacy);
+    if (d_.verdict == Verdict::kUnexplained) suggest(source, base->columns, last, base->y);
+    d_.sentences = verdict_in_words(d_);
+    std::erase_if(d_.notes, [&](const std::string& note) {
+      const auto& said = d_.after.warnings;
+      return std::find(said.begin(), said.end(), note) != said.end();
+    });
+    for (FitResult* fit : {&d_.before.fit, &d_.after}) fit->rows = table_.bench_rows_of(fit->rows);
     tell("done", 1.0);
     return std::move(d_);
   }
@@ -178,7 +194,7 @@ class Work {
   }
 
   double heldout(const FitResult& fit) const {
-    return heldout_rms(d_.table, table_.windows(), fit.fitted, fit.noise.noise);
+    return heldout_rms(table_.bench_with_history(), table_.windows(), fit.fitted, fit.noise.noise);
   }
 
   /// Refits and predicts held-out blocks with one effect more each time.
@@ -191,7 +207,8 @@ class Work {
       so_far.push_back(f);
       MissingEffect missing{.found = f, .estimates = {}};
       const Candidate& candidate = library.candidates[f.candidate];
-      const auto refit = fit(d_.table, extended_by(model_, library, so_far), {});
+      const auto refit = fit(table_.bench_with_history(), extended_by(model_, library, so_far), {});
+      fits_.push_back(d_.after);
       if (refit) {
         d_.after = *refit;
         missing.rms_after = refit->rms;
@@ -219,6 +236,61 @@ class Work {
     }
   }
 
+  /// What a thermometer may do as well as an effect: read in steps, or late.
+  void doubt_the_thermometer(const SearchResult& found) {
+    const Table& table = table_.bench_with_history();
+    if (!table.has("temperature_c")) return;
+    const auto error = StepsError::of(table, d_.before.fit, table_.resolution_c());
+    if (!error) return;
+    if (table_.resolution_c() > 0.0) {
+      blame_the_steps(*error, found);
+      within_steps_ = error->explains(d_.after.residual, true);
+    }
+    // The run log's temperatures are freed of their sensors' lag.
+    if (!table.has("temperature_start_c")) doubt_rates(error->mean_slope());
+  }
+
+  /// A thermometer that reads late makes of the model's own slope an effect of the rate.
+  void doubt_rates(double slope) {
+    for (const MissingEffect& m : d_.missing) {
+      if (m.found.effect != "temperature_rate" || m.estimates.empty()) continue;
+      const auto lag_s = lag_that_does_the_same(m.estimates.front().value, slope);
+      if (!lag_s) continue;
+      auto set = std::find_if(d_.ambiguous.begin(), d_.ambiguous.end(),
+                              [&](const auto& s) { return s.front() == m.found.effect; });
+      if (set == d_.ambiguous.end()) set = d_.ambiguous.insert(set, {m.found.effect});
+      set->emplace_back("thermometer_lag");
+      d_.notes.push_back(fmt::format(
+          "A thermometer that reads {:.0f} s late would look the same as temperature_rate.",
+          *lag_s));
+    }
+  }
+
+  /// Drops effects, the last first, that do no more than readings which are off by half a step.
+  void blame_the_steps(const StepsError& error, const SearchResult& found) {
+    const double step = table_.resolution_c();
+    d_.notes.push_back(
+        fmt::format("The thermometer's resolution of {:g} degC is worth up to {:.2g} deg/h at the "
+                    "model's slope.",
+                    step, 0.5 * error.of_one_step()));
+    error.widen(d_.before.regions);
+    while (!d_.missing.empty() && fits_.size() == d_.missing.size() &&
+           d_.after.predicted.size() == fits_.back().predicted.size()) {
+      const std::string effect = d_.missing.back().found.effect;
+      const Effect* known = find_effect(effect);
+      const bool thermal = known != nullptr && acts_through_temperature(known->info());
+      if (!error.explains(d_.after.predicted - fits_.back().predicted, thermal)) break;
+      std::erase_if(d_.ambiguous, [&](const auto& set) { return set.front() == effect; });
+      d_.missing.pop_back();
+      d_.ladder.pop_back();
+      d_.after = std::move(fits_.back());
+      fits_.pop_back();
+      d_.noise = d_.after.noise.noise;
+      if (d_.missing.empty()) d_.p_adequate = found.p_of_step.back();
+      d_.explained_by_thermometer = fmt::format("the thermometer's resolution of {:g} degC", step);
+    }
+  }
+
   /// Too few rows for a search, but two runs whose magnetic coefficients differ by one factor: the
   /// comparison's test of that needs no more than the coefficients.
   void explain_by_change_of_scale() {
@@ -236,7 +308,7 @@ class Work {
     term.expression = fmt::format("(run_index >= 1) * ({})", sum);
     term.unit = "relative";
     wider.terms.push_back(std::move(term));
-    const auto refit = fit(d_.table, wider, {});
+    const auto refit = fit(table_.bench_with_history(), wider, {});
     if (!refit) return;
     d_.after = *refit;
     MissingEffect missing{.found = {.effect = id}, .terms = {id}, .estimates = {}};
@@ -263,13 +335,19 @@ class Work {
 
   void conclude(const SearchResult& found, const Adequacy& adequacy) {
     d_.unexplained.p_value = adequacy.p_value;
-    const bool uneven = adequacy.p_value <= kShareOfSmooth * options_.false_alarm_rate;
-    if (uneven) d_.unexplained.depends_on = adequacy.depends_on;
-    if (!found.outside_shape.empty()) {
-      d_.unexplained.p_value = std::min(d_.unexplained.p_value, found.p_outside);
-      d_.unexplained.suggestion = found.outside_shape;
+    const bool rough = adequacy.p_value <= kShareOfSmooth * options_.false_alarm_rate;
+    const bool outside = !found.outside_shape.empty() && !within_steps_;
+    const bool uneven = rough && !within_steps_;
+    if (rough != uneven) {
+      d_.explained_by_thermometer =
+          fmt::format("the thermometer's resolution of {:g} degC", table_.resolution_c());
     }
-    if (uneven || !found.outside_shape.empty()) {
+    if (uneven) d_.unexplained.depends_on = adequacy.depends_on;
+    if (outside) {
+      d_.unexplained.p_value = std::min(d_.unexplained.p_value, found.p_outside);
+      d_.unexplained.shape = found.outside_shape;
+    }
+    if (uneven || outside) {
       d_.verdict = Verdict::kUnexplained;
       d_.p_adequate = std::min(d_.p_adequate, d_.unexplained.p_value);
     } else if (!d_.ambiguous.empty()) {
@@ -279,30 +357,34 @@ class Work {
     }
     d_.next_measurements = next_measurements(
         {d_.table, d_.after.fitted, noise_to_plan_with(), d_.ambiguous, d_.not_testable});
-    d_.sentences = verdict_in_words(d_);
+  }
+
+  /// A formula beside the model as it came, or beside what was found where that is clearly better.
+  void suggest(const LibrarySource& source, const MatrixXd& bare, const MatrixXd& extended,
+               const VectorXd& y) {
+    constexpr double kClearlyBetter = 0.9;
+    auto formula = search_formula(source, bare, y);
+    if (!d_.missing.empty()) {
+      auto other = search_formula(source, extended, y);
+      if (other && (!formula || other->heldout_rms < kClearlyBetter * formula->heldout_rms)) {
+        formula = std::move(other);
+        d_.unexplained.beside_found = true;
+      }
+    }
+    if (!formula) return;
+    d_.unexplained.suggestion = formula->expression;
+    d_.unexplained.heldout_rms = formula->heldout_rms;
   }
 
   const DiagnoseOptions& options_;
   const config::ModelFile model_;
   WorkingTable table_;
+  std::vector<FitResult> fits_;  ///< before each addition
+  bool within_steps_ = false;    ///< what is left is no more than the thermometer's steps may hide
   Diagnosis d_;
 };
 
 }  // namespace
-
-std::string_view name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kNothingMissing:
-      return "adequate";
-    case Verdict::kMissingEffect:
-      return "missing_effect";
-    case Verdict::kAmbiguous:
-      return "ambiguous";
-    case Verdict::kUnexplained:
-      return "unexplained";
-  }
-  return "";
-}
 
 Result<Diagnosis> diagnose(const Table& table, const config::ModelFile& model,
                            const DiagnoseOptions& options) {

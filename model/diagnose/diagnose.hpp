@@ -24,6 +24,12 @@ enum class Verdict { kNothingMissing, kMissingEffect, kAmbiguous, kUnexplained }
 /// "adequate", "missing_effect", "ambiguous", "unexplained".
 std::string_view name_of(Verdict verdict);
 
+struct Diagnosis;
+/// The same, or "cannot_tell" where the rows do not suffice for a verdict.
+std::string_view verdict_of(const Diagnosis& diagnosis);
+/// Nothing is missing, as far as the data can show; false where they can show nothing.
+bool found_adequate(const Diagnosis& diagnosis);
+
 struct MissingEffect {
   Found found;
   std::vector<std::string>
@@ -44,7 +50,11 @@ struct LadderStep {
 struct Unexplained {
   double p_value = 1.0;
   std::vector<std::string> depends_on;
-  std::string suggestion;  ///< a formula to start from, labelled as a guess; empty: none
+  std::string shape;  ///< in words: what resembles it more than any effect does; empty: none
+  /// An expression to start from, a guess: a term of a model file; empty: none was any good.
+  std::string suggestion;
+  bool beside_found = false;  ///< the suggestion stands beside the effects that were found
+  double heldout_rms = std::numeric_limits<double>::quiet_NaN();  ///< with the suggestion
 };
 
 struct Diagnosis {
@@ -68,6 +78,11 @@ struct Diagnosis {
   std::vector<NextMeasurement> next_measurements;
   std::vector<LadderStep> ladder;
   std::vector<std::string> sentences;  ///< the verdict in words, in the order to print them
+  /// "the thermometer's resolution of 1 degC", where it explains what an effect would have been
+  /// named for; empty: it does not.
+  std::string explained_by_thermometer;
+  /// How the table was taken where it was not as it should be, in sentences.
+  std::vector<std::string> notes;
 };
 
 struct DiagnoseOptions {

@@ -48,6 +48,7 @@ std::string heading(const Diagnosis& d, const config::ModelFile& model,
   for (std::size_t i = 1; i < d.sentences.size(); ++i) {
     out += fmt::format("<p>{}</p>\n", escaped(d.sentences[i]));
   }
+  for (const std::string& note : d.notes) out += fmt::format("<p>{}</p>\n", escaped(note));
   for (const std::string& warning : d.after.warnings) {
     out += fmt::format("<p>Warning: {}</p>\n", escaped(warning));
   }

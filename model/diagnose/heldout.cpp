@@ -22,10 +22,10 @@ constexpr std::size_t kFolds = 8;
 // an extrapolation.
 constexpr std::size_t kBlocksPerFold = 3;
 
+/// Of the rows that have a measurement.
 struct System {
   MatrixXd x;
   VectorXd y;
-  std::vector<Index> complete;  // rows without a missing number
 };
 
 std::optional<System> system_of(const Signals& signals, config::ModelFile model) {
@@ -52,9 +52,12 @@ std::optional<System> system_of(const Signals& signals, config::ModelFile model)
                   out.x.middleRows(at, rows.rows()) = rows.leftCols(rows.cols() - 1);
                   out.y.segment(at, rows.rows()) = rows.rightCols(1);
                 });
+  std::vector<Index> measured;
   for (Index i = 0; i < n; ++i) {
-    if (out.x.row(i).allFinite() && std::isfinite(out.y[i])) out.complete.push_back(i);
+    if (std::isfinite(out.y[i])) measured.push_back(i);
   }
+  out.x = out.x(measured, Eigen::all).eval();
+  out.y = out.y(measured).eval();
   return out;
 }
 
@@ -146,34 +149,40 @@ std::vector<HeldoutVote> heldout_votes(const Windows& windows, const NoiseCoeffi
   return votes;
 }
 
-double heldout_rms(const Table& table, const Windows& windows, const config::ModelFile& fitted,
-                   const NoiseCoefficients& noise) {
-  const Signals signals(table, fitted.reference_temperature_c);
-  const auto system = system_of(signals, fitted);
-  if (!system) return kMissing;
-  const auto n = system->complete.size();
-  const auto p = static_cast<std::size_t>(system->x.cols());
-  if (n < p + 2) return kMissing;
-
-  const Index rank =
-      p > 0 ? Eigen::ColPivHouseholderQR<MatrixXd>(system->x(system->complete, Eigen::all)).rank()
-            : 0;
+double heldout_rms(const Windows& windows, const NoiseCoefficients& noise, const MatrixXd& x,
+                   const VectorXd& y, Index bench_rows) {
+  std::vector<Index> bench, quiet;
+  for (Index i = 0; i < y.size(); ++i) {
+    if (x.row(i).allFinite() && std::isfinite(y[i])) (i < bench_rows ? bench : quiet).push_back(i);
+  }
+  const Index p = x.cols();
+  if (std::ssize(bench) < p + 2) return kMissing;
+  const Index rank = p > 0 ? Eigen::ColPivHouseholderQR<MatrixXd>(x(bench, Eigen::all)).rank() : 0;
   double squares = 0.0;
-  std::size_t count = 0;
-  for (const Fold& fold : folds_of(system->complete)) {
-    if (fold.kept.size() < p) continue;
+  Index count = 0;
+  for (Fold& fold : folds_of(bench)) {
+    fold.kept.insert(fold.kept.end(), quiet.begin(), quiet.end());
+    if (std::ssize(fold.kept) < p) continue;
     std::unique_ptr<Whitener> whitener;
     if (noise.angle_random_walk_deg_per_sqrt_h > 0.0) {
       if (auto made = make_whitener(windows_at(windows, fold.kept), noise)) {
         whitener = std::move(*made);
       }
     }
-    const auto errors = predicted_badly(system->x, system->y, fold, whitener.get(), rank);
+    const auto errors = predicted_badly(x, y, fold, whitener.get(), rank);
     if (!errors) continue;
     squares += errors->squaredNorm();
-    count += fold.left.size();
+    count += std::ssize(fold.left);
   }
   return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : kMissing;
+}
+
+double heldout_rms(const Table& table, const Windows& windows, const config::ModelFile& fitted,
+                   const NoiseCoefficients& noise) {
+  const Signals signals(table, fitted.reference_temperature_c);
+  const auto system = system_of(signals, fitted);
+  if (!system) return kMissing;
+  return heldout_rms(windows, noise, system->x, system->y, system->y.size());
 }
 
 }  // namespace fogbench::model

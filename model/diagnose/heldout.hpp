@@ -13,9 +13,15 @@ namespace fogbench::model {
 /// of neighbouring rows are left out in turn, the coefficients fitted to the others (inner
 /// parameters as `fitted` has them, weighted by `noise`), and the block predicted by the model
 /// alone, without interpolating the noise. NaN when the rows do not suffice.
-/// `windows`: of the table's rows, which are in order and complete.
+/// `windows`: of the table's rows that have a measurement, which are in order and complete; the
+/// others are there for their history.
 double heldout_rms(const Table& table, const Windows& windows, const config::ModelFile& fitted,
                    const NoiseCoefficients& noise);
+
+/// The same for columns: the rows of `x` and `y` are the first of `windows`; those from
+/// `bench_rows` on (a static record) are never left out.
+double heldout_rms(const Windows& windows, const NoiseCoefficients& noise, const Eigen::MatrixXd& x,
+                   const Eigen::VectorXd& y, Eigen::Index bench_rows);
 
 /// Whether blocks of rows that took no part in the fit are predicted better with some columns than
 /// without them.

@@ -20,8 +20,9 @@ using Eigen::VectorXd;
 
 constexpr int kGridPoints = 20;       // of an inner parameter
 constexpr int kMostJumpPlaces = 400;  // of an instant
-// Each run more is another candidate; with many of them every scatter between runs looks like one.
-constexpr std::size_t kMostRuns = 8;
+// A change that lasts from one run on is a candidate for each run; with many of them every scatter
+// between runs looks like one. A bias of each run is one candidate of many columns.
+constexpr std::size_t kMostRunsOneByOne = 8, kMostRuns = 40;
 // A user's inner parameter is looked for within this factor of the value that he gave.
 constexpr double kUsersRange = 5.0;
 constexpr double kRipplePeriods = 1.2;  // fewer inside the range look like a polynomial
@@ -72,15 +73,7 @@ void add_grid(LibraryBuilder& builder, Candidate candidate) {
   const std::vector<double> grid =
       candidate.parameter ? grid_of(*candidate.parameter, candidate.name, builder.signals())
                           : std::vector<double>{0.0};
-  for (std::size_t shape = 0; shape < candidate.shapes.size(); ++shape) {
-    for (const double value : grid) {
-      builder.add_block(candidate, candidate.shapes[shape](value), value, shape);
-    }
-  }
-  if (candidate.blocks.empty()) {
-    return builder.refuse(candidate.name, "the effect is zero everywhere in these data");
-  }
-  builder.add(std::move(candidate));
+  builder.add_on_grid(std::move(candidate), grid);
 }
 
 void add_effect(LibraryBuilder& builder, const Effect& effect) {
@@ -96,7 +89,10 @@ void add_effect(LibraryBuilder& builder, const Effect& effect) {
   Candidate candidate{.name = id, .kind = Candidate::Kind::kEffect, .slow = is_slow(id)};
   candidate.terms.push_back({.effect = id});
   candidate.units.assign(info.units.begin(), info.units.end());
-  if (info.signals.size() == 1 && !info.has_history && info.signals.front() != "time_s") {
+  const auto is_time = [](std::string_view name) {
+    return name == "time_s" || name == "time_since_power_on_s";
+  };
+  if (info.signals.size() == 1 && !info.has_history && !is_time(info.signals.front())) {
     candidate.curve_over = info.signals.front();
   }
   if (!info.parameters.empty()) candidate.parameter = info.parameters.front();
@@ -143,20 +139,56 @@ Status add_expression(LibraryBuilder& builder, const config::ModelTerm& term) {
   return {};
 }
 
+/// Expressions that enter together, as one candidate. Nothing is added without any.
+Status add_together(LibraryBuilder& builder, Candidate candidate) {
+  std::vector<Expression> expressions;
+  for (const config::ModelTerm& term : candidate.terms) {
+    auto expression = Expression::parse(term.effect, *term.expression, {}, builder.signals());
+    if (!expression) return expression.error();
+    expressions.push_back(*expression);
+    candidate.units.push_back(term.unit);
+  }
+  if (expressions.empty()) return {};
+  candidate.shapes.push_back(
+      [expressions, source = builder.source(), &signals = builder.signals()](double) {
+        MatrixXd out(static_cast<Eigen::Index>(signals.rows()),
+                     static_cast<Eigen::Index>(expressions.size()));
+        for (std::size_t i = 0; i < expressions.size(); ++i) {
+          out.col(static_cast<Eigen::Index>(i)) = expressions[i].evaluate(signals, {});
+        }
+        return LibraryBuilder(source).averaged(std::move(out));
+      });
+  add_grid(builder, std::move(candidate));
+  return {};
+}
+
 /// What may have changed from one run to the next: the bias, and the magnetic sensitivity (the
-/// shield's history, or the coils' calibration).
+/// shield's history, or the coils' calibration). A change may last from one run on; and the bias of
+/// a gyro is another one each time it is switched on, which is one candidate for all runs.
 Status add_changes_between_runs(LibraryBuilder& builder) {
   const Signals& signals = builder.signals();
   const std::size_t runs =
       signals.runs().size() - (builder.source().table.has_quiet_record() ? 1 : 0);
+  if (runs < 2) return {};
+  const std::string name = "bias_change_between_runs";
   if (runs > kMostRuns) {
-    builder.refuse("bias_change_between_runs",
-                   fmt::format("the table has {} runs; changes are looked for between at most {}",
-                               runs, kMostRuns));
+    builder.refuse(name, fmt::format("the table has {} runs; a bias of each is looked for among at "
+                                     "most {}",
+                                     runs, kMostRuns));
     return {};
   }
+  if (runs > 2) {
+    Candidate each{.name = name, .kind = Candidate::Kind::kEffect};
+    for (std::size_t run = 1; run < runs; ++run) {
+      each.terms.push_back({.effect = fmt::format("{}_{}", name, run + 1),
+                            .expression = fmt::format("(run_index == {})", run),
+                            .unit = "deg/h"});
+    }
+    if (Status added = add_together(builder, std::move(each)); !added) return added;
+  }
+  if (runs > kMostRunsOneByOne) return {};
   for (std::size_t run = 1; run < runs; ++run) {
-    const std::string suffix = runs > 2 ? fmt::format("_{}", run + 1) : std::string();
+    const std::string suffix = runs > 2 ? fmt::format("_from_{}", run + 1) : std::string();
     const auto since = [&](const std::string& what) {
       return fmt::format("(run_index >= {}){}", run, what);
     };
@@ -169,26 +201,10 @@ Status add_changes_between_runs(LibraryBuilder& builder) {
            .expression = since(fmt::format(" * field_{}_ut / 100", term.effect.back())),
            .unit = "deg/h per 100 uT"});
     }
-    Candidate bias{.name = "bias_change_between_runs" + suffix, .kind = Candidate::Kind::kEffect};
+    Candidate bias{.name = name + suffix, .kind = Candidate::Kind::kEffect};
     bias.terms.push_back({.effect = bias.name, .expression = since(""), .unit = "deg/h"});
     for (Candidate* candidate : {&bias, &magnetic}) {
-      std::vector<Expression> expressions;
-      for (const config::ModelTerm& term : candidate->terms) {
-        auto expression = Expression::parse(term.effect, *term.expression, {}, signals);
-        if (!expression) return expression.error();
-        expressions.push_back(*expression);
-        candidate->units.push_back(term.unit);
-      }
-      if (expressions.empty()) continue;
-      candidate->shapes.push_back([expressions, source = builder.source(), &signals](double) {
-        MatrixXd out(static_cast<Eigen::Index>(signals.rows()),
-                     static_cast<Eigen::Index>(expressions.size()));
-        for (std::size_t i = 0; i < expressions.size(); ++i) {
-          out.col(static_cast<Eigen::Index>(i)) = expressions[i].evaluate(signals, {});
-        }
-        return LibraryBuilder(source).averaged(std::move(out));
-      });
-      add_grid(builder, std::move(*candidate));
+      if (Status added = add_together(builder, std::move(*candidate)); !added) return added;
     }
   }
   return {};
@@ -225,6 +241,7 @@ Result<Library> make_library(const LibrarySource& source) {
     }
     if (Status added = add_expression(builder, term); !added) return added.error();
   }
+  add_sensitivities(builder);
   if (Status added = add_changes_between_runs(builder); !added) return added.error();
   add_shadows(builder);
   return builder.finish();

@@ -39,6 +39,9 @@ struct Candidate {
   std::vector<Shape> shapes;
   /// The variable of which the effect is a curve: no memory, nothing else. Empty: it is more.
   std::string curve_over;
+  /// The simpler effect that it becomes in a limit of its inner parameter, and that is meant where
+  /// this one does hardly better. Empty: none, or the catalogue's own affair.
+  std::string extends;
   bool pulse = false;  ///< begins and ends at an instant: two jumps
   bool slow = false;   ///< acts on the scale of the whole run: a random walk may look like it
   std::vector<Block> blocks;

@@ -32,6 +32,18 @@ void LibraryBuilder::add(Candidate candidate) {
   if (!candidate.blocks.empty()) library_.candidates.push_back(std::move(candidate));
 }
 
+void LibraryBuilder::add_on_grid(Candidate candidate, const std::vector<double>& grid) {
+  for (std::size_t shape = 0; shape < candidate.shapes.size(); ++shape) {
+    for (const double value : grid) {
+      add_block(candidate, candidate.shapes[shape](value), value, shape);
+    }
+  }
+  if (candidate.blocks.empty()) {
+    return refuse(candidate.name, "the effect is zero everywhere in these data");
+  }
+  add(std::move(candidate));
+}
+
 void LibraryBuilder::refuse(std::string effect, std::string because) {
   library_.not_testable.push_back({std::move(effect), std::move(because)});
 }

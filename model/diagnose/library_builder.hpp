@@ -25,6 +25,9 @@ class LibraryBuilder {
   void add_shadow(std::string name, const Eigen::MatrixXd& fine_columns);
   /// Unless it has no block.
   void add(Candidate candidate);
+  /// With a block for each of its shapes at each value of its inner parameter; refused where all of
+  /// them are zero.
+  void add_on_grid(Candidate candidate, const std::vector<double>& grid);
   void refuse(std::string effect, std::string because);
   Library finish();
 
@@ -34,6 +37,9 @@ class LibraryBuilder {
   Eigen::Index count_ = 0;
   std::vector<Eigen::MatrixXd> parts_;
 };
+
+/// Effects of the columns that are not of the measurement table: causes that somebody recorded.
+void add_sensitivities(LibraryBuilder& builder);
 
 /// The shapes that no effect of the catalogue has.
 void add_shadows(LibraryBuilder& builder);

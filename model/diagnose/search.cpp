@@ -222,6 +222,8 @@ class Search {
     for (const Index c : stage.effects()) {
       const double lag = stage.lead()[own] - stage.lead()[c];
       if (c == own || is_found(static_cast<std::size_t>(c)) || lag > kHopeless) continue;
+      // Another form of it that contains it, and would lead if it were needed.
+      if (stage.candidate(c).extends == f.effect) continue;
       near.emplace_back(lag, c);
     }
     std::sort(near.begin(), near.end());

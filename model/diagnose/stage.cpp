@@ -45,10 +45,12 @@ Index Stage::best(const std::vector<Index>& among) const {
 
 Index Stage::leader() const {
   const Index first = best(effects_);
-  if (!at_edge(first)) return first;
+  const bool edge = at_edge(first);
   std::vector<Index> simpler;
   for (const Index c : effects_) {
-    if (!candidate(c).parameter && lead_[first] - lead_[c] < kNearlyAsWell) simpler.push_back(c);
+    const bool its_limit =
+        edge ? !candidate(c).parameter : candidate(c).name == candidate(first).extends;
+    if (its_limit && lead_[first] - lead_[c] < kNearlyAsWell) simpler.push_back(c);
   }
   return simpler.empty() ? first : best(simpler);
 }

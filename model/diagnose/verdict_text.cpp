@@ -80,10 +80,54 @@ std::string effect_sentence(const MissingEffect& m) {
   return line + ".";
 }
 
+/// What a user can start from.
+std::string formula_sentence(const Diagnosis& d) {
+  const Unexplained& u = d.unexplained;
+  const std::string shape =
+      u.shape.empty() ? std::string() : fmt::format("Its shape resembles {}. ", u.shape);
+  if (u.suggestion.empty()) {
+    return shape + "No short formula of the recorded columns predicts held-out rows better.";
+  }
+  std::vector<std::string> names;
+  for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
+  return fmt::format(
+      "{}A formula to start from (a guess, as the expression of a term{}): {}; held-out RMS {:.3g} "
+      "deg/h, {:.1f} times the noise floor.",
+      shape, u.beside_found ? fmt::format(" beside {}", fmt::join(names, ", ")) : std::string(),
+      u.suggestion, u.heldout_rms, u.heldout_rms / d.noise_floor);
+}
+
 }  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kNothingMissing:
+      return "adequate";
+    case Verdict::kMissingEffect:
+      return "missing_effect";
+    case Verdict::kAmbiguous:
+      return "ambiguous";
+    case Verdict::kUnexplained:
+      return "unexplained";
+  }
+  return "";
+}
+
+bool found_adequate(const Diagnosis& diagnosis) {
+  return diagnosis.judged && diagnosis.verdict == Verdict::kNothingMissing;
+}
+
+std::string_view verdict_of(const Diagnosis& diagnosis) {
+  const bool unknown = !diagnosis.judged && diagnosis.verdict == Verdict::kNothingMissing;
+  return unknown ? "cannot_tell" : name_of(diagnosis.verdict);
+}
 
 std::vector<std::string> verdict_in_words(const Diagnosis& d) {
   std::vector<std::string> out{verdict_sentence(d)};
+  if (!d.explained_by_thermometer.empty()) {
+    out.push_back(
+        fmt::format("What else the model misses, {} explains.", d.explained_by_thermometer));
+  }
   const std::string_view lead =
       d.verdict == Verdict::kUnexplained ? "Nearest of the catalogue, but not enough: " : "";
   for (const MissingEffect& m : d.missing) {
@@ -92,10 +136,7 @@ std::vector<std::string> verdict_in_words(const Diagnosis& d) {
   for (const auto& set : d.ambiguous) {
     out.push_back(fmt::format("Cannot tell apart: {}.", fmt::join(set, ", ")));
   }
-  if (!d.unexplained.suggestion.empty()) {
-    out.push_back(fmt::format("A shape to start from (a guess, no catalogue effect has it): {}.",
-                              d.unexplained.suggestion));
-  }
+  if (d.verdict == Verdict::kUnexplained) out.push_back(formula_sentence(d));
   // Then what a comparison says is all that can be said.
   if (!d.judged) {
     out.insert(out.end(), d.before.sentences.begin(), d.before.sentences.end());

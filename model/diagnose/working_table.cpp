@@ -10,6 +10,9 @@
 
 #include "model/condense.hpp"
 #include "model/design.hpp"
+#include "model/diagnose/thermometer.hpp"
+#include "model/measurement_columns.hpp"
+#include "model/row_order.hpp"
 #include "model/signals.hpp"
 
 namespace fogbench::model {
@@ -22,7 +25,6 @@ constexpr std::size_t kMostFineRows = 30'000;
 constexpr std::size_t kMostRows = 800;
 // A column with fewer numbers than this share cannot be filled from its neighbours.
 constexpr double kLeastFilled = 0.5;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kStdError = "rate_std_error_deg_per_h";
 
 using Bin = RowGroup;
@@ -41,44 +43,6 @@ std::vector<double> picked(std::span<const double> values, const std::vector<std
   return out;
 }
 
-/// Runs by name ("2" before "10"), rows by time; a row without a time follows the one before it. A
-/// row that repeats the time and the value of the one before it was written twice and counts once.
-std::vector<std::size_t> order_of(const Table& table, const std::string& observable,
-                                  const std::vector<std::size_t>& rows) {
-  std::vector<double> time(table.rows(), 0.0);
-  if (table.has("time_s")) {
-    const auto given = table.column("time_s");
-    std::copy(given.begin(), given.end(), time.begin());
-    for (std::size_t i = 0; i < time.size(); ++i) {
-      if (std::isnan(time[i])) time[i] = i > 0 ? time[i - 1] : 0.0;
-    }
-  }
-  std::vector<std::size_t> rank(table.run().values.size());
-  std::vector<std::size_t> sorted(rank.size());
-  std::iota(sorted.begin(), sorted.end(), std::size_t{0});
-  std::sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
-    const std::string &s = table.run().values[a], &t = table.run().values[b];
-    return std::pair(s.size(), s) < std::pair(t.size(), t);
-  });
-  for (std::size_t i = 0; i < sorted.size(); ++i) rank[sorted[i]] = i;
-
-  std::vector<std::size_t> order = rows;
-  const auto key = [&](std::size_t row) {
-    return std::pair(rank[table.run().index[row]], time[row]);
-  };
-  const auto before = [&](std::size_t a, std::size_t b) { return key(a) < key(b); };
-  if (!std::is_sorted(order.begin(), order.end(), before)) {
-    std::stable_sort(order.begin(), order.end(), before);
-  }
-  if (!table.has("time_s")) return order;
-  const auto value = table.column(observable);
-  const auto repeats = [&](std::size_t a, std::size_t b) {
-    return key(a) == key(b) && value[a] == value[b];
-  };
-  order.erase(std::unique(order.begin(), order.end(), repeats), order.end());
-  return order;
-}
-
 /// Squares and products of larger numbers overflow; a length or a scatter is not negative.
 Status check_numbers(const Table& table) {
   constexpr double kLargest = 1e60;
@@ -95,8 +59,8 @@ Status check_numbers(const Table& table) {
   return {};
 }
 
-/// Rows on which the model can be evaluated.
-Result<std::vector<std::size_t>> complete_rows(const Table& table, const config::ModelFile& model) {
+/// Of each row, whether the model can be evaluated and compared with a measurement there.
+Result<std::vector<bool>> complete_rows(const Table& table, const config::ModelFile& model) {
   if (!table.has(model.observable)) {
     return Error{ErrorCode::kBadInput, table.why_missing(model.observable)};
   }
@@ -107,13 +71,12 @@ Result<std::vector<std::size_t>> complete_rows(const Table& table, const config:
   for (const std::string& name : design->signals_needed()) {
     if (table.has(name)) needed.push_back(table.column(name));
   }
-  std::vector<std::size_t> rows;
+  std::vector<bool> rows(table.rows());
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const bool all = std::all_of(needed.begin(), needed.end(),
-                                 [&](const auto& column) { return std::isfinite(column[row]); });
-    if (all) rows.push_back(row);
+    rows[row] = std::all_of(needed.begin(), needed.end(),
+                            [&](const auto& column) { return std::isfinite(column[row]); });
   }
-  if (rows.empty()) {
+  if (std::find(rows.begin(), rows.end(), true) == rows.end()) {
     return Error{ErrorCode::kBadInput,
                  fmt::format("found no row with {} and every signal of the model, expected some",
                              model.observable)};
@@ -146,12 +109,12 @@ struct RowTimes {
   bool usable = true;  ///< false: the time does not advance, the rows follow each other
 };
 
-/// Empty `time` or `duration`: the table has none.
+/// Empty `time` or `duration`: the table has none, or none that advances.
 RowTimes times_of(const TextColumn& runs, std::vector<double> time, std::vector<double> duration) {
   const auto& run = runs.index;
   const std::size_t n = run.size();
   RowTimes out{std::move(time), std::move(duration), true};
-  out.usable = !out.centre.empty();
+  out.usable = out.centre.size() == n;
   std::vector<double> steps;
   for (std::size_t i = 1; i < n && out.usable; ++i) {
     if (run[i] != run[i - 1]) continue;
@@ -216,45 +179,73 @@ Table averaged(const Table& table, const std::vector<Bin>& bins) {
   return out;
 }
 
-/// The rows in order, without gaps, at most kMostFineRows. Column by column: a table of millions of
-/// rows is not copied.
-Table in_order(const Table& table, const std::string& observable,
-               const std::vector<std::size_t>& rows) {
-  const std::vector<std::size_t> order = order_of(table, observable, rows);
+/// The rows in order, without gaps, at most kMostFineRows. Rows that are not `complete` keep their
+/// place, for what they tell of the history, and have no observable. Column by column: a table of
+/// millions of rows is not copied.
+Table in_order(const Table& table, const std::string& observable, const std::vector<bool>& complete,
+               std::vector<std::string>& notes) {
+  RowOrder order = row_order(table, observable);
+  notes.insert(notes.end(), order.notes.begin(), order.notes.end());
   Table texts;
-  texts.set_run(picked(table.run(), order));
-  texts.set_segment(picked(table.segment(), order));
+  texts.set_run(picked(table.run(), order.rows));
+  texts.set_segment(picked(table.segment(), order.rows));
   const std::vector<Bin> bins =
-      order.size() > kMostFineRows ? bins_within(texts, kMostFineRows) : bins_of(texts, 1);
+      order.rows.size() > kMostFineRows ? bins_within(texts, kMostFineRows) : bins_of(texts, 1);
 
   Table out = texts_of(texts, bins);
-  std::vector<double> time, duration;
+  std::vector<double> stated_s;
   for (const std::string& name : table.column_names()) {
-    std::vector<double> column = picked(table.column(name), order);
-    if (const Status filled = fill_gaps(name, column); !filled) {
+    std::vector<double> column = picked(table.column(name), order.rows);
+    if (name == "time_s") {
+      if (!order.time_advances) {
+        out.set_dropped(name, "column time_s: stands still or runs backwards");
+        continue;
+      }
+      column = order.time_s;
+    }
+    if (name == observable) {
+      for (std::size_t i = 0; i < column.size(); ++i) {
+        if (!complete[order.rows[i]]) column[i] = kMissing;
+      }
+    } else if (const Status filled = fill_gaps(name, column); !filled) {
+      const bool any =
+          std::any_of(column.begin(), column.end(), [](double v) { return std::isfinite(v); });
+      if (any && !is_measurement_column(name)) notes.push_back(filled.error().message + ".");
       out.set_dropped(name, filled.error().message);
       continue;
     }
     out.set_column(name, condensed(name, column, {}, bins));
-    if (name == "time_s") time = std::move(column);
-    if (name == "duration_s") duration = std::move(column);
+    if (name == "duration_s") stated_s = std::move(column);
   }
-  const RowTimes times = times_of(texts.run(), std::move(time), std::move(duration));
-  if (!times.usable && out.has("time_s")) {
-    out.set_dropped("time_s", "column time_s: stands still or runs backwards");
+  const RowTimes times = times_of(
+      texts.run(), order.time_advances ? std::move(order.time_s) : std::vector<double>(), stated_s);
+  if (times.usable && !stated_s.empty()) {
+    // A window that reaches into its neighbour is as long as the step between them.
+    for (std::size_t i = 0; i < stated_s.size(); ++i) {
+      stated_s[i] = std::min(stated_s[i], times.duration[i]);
+    }
+    out.set_column("duration_s", condensed("duration_s", stated_s, {}, bins));
   }
   out.set_column("window_centre_s", condensed("window_centre_s", times.centre, {}, bins));
   out.set_column("window_duration_s", condensed("window_duration_s", times.duration, {}, bins));
   return out;
 }
 
+/// Which rows have a measurement.
+std::vector<bool> measured(const Table& table, const std::string& observable) {
+  const auto values = table.column(observable);
+  std::vector<bool> out;
+  out.reserve(values.size());
+  for (const double v : values) out.push_back(std::isfinite(v));
+  return out;
+}
+
 /// What the static record did not note stood still.
-Table quiet_run(const Table& quiet, const Table& bench, const std::string& observable) {
-  std::vector<std::size_t> rows;
-  for (std::size_t i = 0; i < quiet.rows(); ++i) {
-    if (std::isfinite(quiet.column(observable)[i])) rows.push_back(i);
-  }
-  Table out = in_order(quiet, observable, rows);
+Table quiet_run(const Table& quiet, const Table& bench, const std::string& observable,
+                std::vector<std::string>& notes) {
+  const std::vector<bool> complete = measured(quiet, observable);
+  const Table rows = in_order(quiet, observable, complete, notes);
+  Table out = rows.select(measured(rows, observable));
   for (const std::string& name : bench.column_names()) {
     if (name == "time_s" || name.ends_with("duration_s") || name == "window_centre_s" ||
         name == kStdError || name == observable) {
@@ -287,6 +278,11 @@ Windows windows_of(const Table& table) {
 
 }  // namespace
 
+bool is_made_for_analysis(std::string_view column) {
+  return column == kQuietColumn || column == kReadingsColumn || column == "window_centre_s" ||
+         column == "window_duration_s";
+}
+
 config::ModelTerm quiet_bias() {
   config::ModelTerm term;
   term.effect = "bias_of_the_static_record";
@@ -304,30 +300,61 @@ Result<WorkingTable> WorkingTable::make(const Table& table, const config::ModelF
   if (quiet != nullptr && !quiet->has(model.observable)) {
     return Error{ErrorCode::kBadInput, "static record: " + quiet->why_missing(model.observable)};
   }
-  const auto rows = complete_rows(table, model);
-  if (!rows) return rows.error();
+  const auto complete = complete_rows(table, model);
+  if (!complete) return complete.error();
   WorkingTable out;
-  out.fine_ = in_order(table, model.observable, *rows);
-  std::vector<Bin> bins = bins_within(out.fine_, kMostRows);
-  out.bench_ = averaged(out.fine_, bins);
-  out.rows_per_bin_ = std::max<std::size_t>(1, rows->size() * table.rows_averaged() / bins.size());
+  out.fine_ = in_order(table, model.observable, *complete, out.notes_);
+  MendedTemperature mended = mend_temperature(out.fine_);
+  out.resolution_c_ = mended.resolution_c;
+  out.notes_.insert(out.notes_.end(), mended.notes.begin(), mended.notes.end());
+  if (mended.resolution_c > 0.0) {
+    out.fine_.set_column(kReadingsColumn, std::move(mended.readings_c));
+  }
+  std::vector<bool> counts = measured(out.fine_, model.observable);
+  const Table counted = out.fine_.select(counts);
+  std::vector<Bin> bins = bins_within(counted, kMostRows);
+  out.bench_ = averaged(counted, bins);
+  // Between averages of raw samples the samples without a measurement tell nothing more.
+  if (bins.size() == counted.rows() && counted.rows() < out.fine_.rows()) out.history_ = out.fine_;
+  const auto rows = static_cast<std::size_t>(std::count(complete->begin(), complete->end(), true));
+  out.rows_per_bin_ = std::max<std::size_t>(1, rows * table.rows_averaged() / bins.size());
   Table coarse = out.bench_;
   if (quiet != nullptr && quiet->has(model.observable) && quiet->rows() > 0) {
-    const Table still = quiet_run(*quiet, out.fine_, model.observable);
-    const std::size_t offset = out.fine_.rows();
-    out.fine_.set_column(kQuietColumn, std::vector<double>(offset, 0.0));
+    const Table still = quiet_run(*quiet, out.fine_, model.observable, out.notes_);
+    const std::size_t offset = counted.rows();
+    out.fine_.set_column(kQuietColumn, std::vector<double>(out.fine_.rows(), 0.0));
     out.fine_.append(still);
+    counts.resize(out.fine_.rows(), true);
     const std::vector<Bin> more = bins_within(still, kMostRows);
     coarse.append(averaged(still, more));
     for (const Bin& bin : more) bins.push_back({bin.begin + offset, bin.end + offset});
   }
+  for (std::size_t row = 0; row < counts.size(); ++row) {
+    if (counts[row]) out.counted_.push_back(static_cast<Index>(row));
+  }
   for (const Bin& bin : bins) out.begin_.push_back(bin.begin);
-  out.begin_.push_back(out.fine_.rows());
+  out.begin_.push_back(out.counted_.size());
   out.windows_ = windows_of(coarse);
   return out;
 }
 
+std::vector<std::size_t> WorkingTable::bench_rows_of(const std::vector<std::size_t>& rows) const {
+  if (!history_) return rows;
+  std::vector<std::size_t> out;
+  for (const std::size_t row : rows) {
+    const auto at = std::lower_bound(counted_.begin(), counted_.end(), static_cast<Index>(row));
+    out.push_back(static_cast<std::size_t>(at - counted_.begin()));
+  }
+  return out;
+}
+
 MatrixXd WorkingTable::average(const MatrixXd& fine_columns) const {
+  const auto counted = static_cast<Index>(counted_.size());
+  if (counted < fine_columns.rows()) return average_counted(fine_columns(counted_, Eigen::all));
+  return average_counted(fine_columns);
+}
+
+MatrixXd WorkingTable::average_counted(const MatrixXd& fine_columns) const {
   if (fine_columns.rows() == rows()) return fine_columns;
   MatrixXd out(rows(), fine_columns.cols());
   for (Index i = 0; i < rows(); ++i) {

@@ -10,16 +10,16 @@ namespace fogbench::model::effects {
 const FunctionEffect& warm_up() {
   static const FunctionEffect effect(
       {.id = "warm_up",
-       .formula = "exp(-time_s / tau)",
+       .formula = "exp(-time since power-on / tau)",
        .columns = {""},
        .units = {"deg/h"},
-       .signals = {"time_s"},
+       .signals = {"time_since_power_on_s"},
        .parameters = {{.name = "tau", .unit = "s", .minimum = 300.0, .maximum = 7200.0}},
        .excited_by = "the first hour after power-on; typically 0.1..2 deg/h",
        .confused_with = "temperature_rate; drift_linear with a long tau",
        .source = "bench experience: electronics and light source warming up"},
       [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
-        const Signals::View time = signals.signal("time_s");
+        const Signals::View time = signals.signal("time_since_power_on_s");
         const Signals::View duration = signals.signal("duration_s");
         Eigen::VectorXd decay = (-time / inner[0]).array().exp();
         for (Eigen::Index row = 0; row < decay.size(); ++row) {
