@@ -19,6 +19,7 @@
 #include "daemon/run_options.hpp"
 #include "model/compare.hpp"
 #include "model/report.hpp"
+#include "model/row_order.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -171,8 +172,9 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
     if (!opened) return opened.error();
     page = std::move(*opened);
   }
-  const auto table = load_table(options.data);
+  auto table = load_table(options.data);
   if (!table) return table.error();
+  for (const std::string& note : model::mend_stamps(*table, model->observable)) print_note(note);
   const auto result = model::compare(
       *table, *model,
       {.noise = options.noise, .weight_by = options.weight_by, .as_is = options.as_is});

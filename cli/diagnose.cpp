@@ -4,12 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
+#include <atomic>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
 
 #include "cli/command.hpp"
 #include "cli/diagnosis_json.hpp"
+#include "cli/diagnosis_text.hpp"
 #include "cli/fit_record.hpp"
 #include "cli/load_table.hpp"
 #include "cli/output.hpp"
@@ -25,6 +28,8 @@
 namespace fogbench::cli {
 namespace {
 
+using nlohmann::ordered_json;
+
 struct DiagnoseOptions {
   DataOptions data;
   std::string model;
@@ -33,6 +38,7 @@ struct DiagnoseOptions {
   std::string output;
   std::vector<std::string> candidates;
   std::uint64_t seed = model::DiagnoseOptions{}.seed;
+  bool each = false;
   bool check = false;
   bool json = false;
 };
@@ -54,6 +60,7 @@ std::string next_step(const model::Diagnosis& d, const DiagnoseOptions& options)
     return model::find_effect(id) != nullptr;
   });
   if (in_catalogue) {
+    for (std::string& effect : effects) effect = shell_word(effect);
     return fmt::format(
         "fogbench add {} --model {} -o wider.json && fogbench diagnose {} --model wider.json",
         fmt::join(effects, " "), model, data);
@@ -65,94 +72,6 @@ std::string next_step(const model::Diagnosis& d, const DiagnoseOptions& options)
   return fmt::format(
       "fogbench diagnose {} --model {}{} -o wider.json && fogbench compare {} --model wider.json",
       data, model, candidates, data);
-}
-
-/// "first, second" under each of the headings, in the order in which they first come.
-class GroupedLines {
- public:
-  void add(const std::string& heading, const std::string& item) {
-    const auto found = std::find_if(lines_.begin(), lines_.end(),
-                                    [&](const auto& line) { return line.first == heading; });
-    if (found == lines_.end()) {
-      lines_.emplace_back(heading, item);
-    } else {
-      found->second += ", " + item;
-    }
-  }
-  void print(const std::string& title) const {
-    if (!lines_.empty()) fmt::print("{}\n", title);
-    for (const auto& [heading, items] : lines_) fmt::print("  {}: {}\n", heading, items);
-  }
-
- private:
-  std::vector<std::pair<std::string, std::string>> lines_;
-};
-
-void print_bounds(const std::vector<model::Bound>& bounds) {
-  GroupedLines lines;
-  for (const model::Bound& b : bounds) {
-    lines.add(b.unit, fmt::format("{} {:.2g}", b.effect, b.absent_or_below));
-  }
-  lines.print("Absent, or smaller than this (95 %):");
-}
-
-void print_not_testable(const std::vector<model::NotTestable>& effects) {
-  GroupedLines lines;
-  for (const model::NotTestable& n : effects) lines.add(n.because, n.effect);
-  lines.print("Not testable with these data:");
-}
-
-std::string few_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 4;
-  const std::size_t shown = names.size() > kMost + 1 ? kMost : names.size();
-  const std::vector<std::string> first(names.begin(),
-                                       names.begin() + static_cast<std::ptrdiff_t>(shown));
-  const std::string rest =
-      shown < names.size() ? fmt::format(" and {} more", names.size() - shown) : std::string();
-  return fmt::format("{}{}", fmt::join(first, ", "), rest);
-}
-
-void print_text(const model::Diagnosis& d, const DiagnoseOptions& options, std::string_view unit) {
-  const std::string in(unit);
-  for (const std::string& sentence : d.sentences) fmt::print("{}\n", sentence);
-  for (const std::string& warning : d.after.warnings) fmt::print("warning: {}\n", warning);
-  fmt::print("\n");
-  std::size_t shown = 0;
-  constexpr std::size_t kMostFailures = 3;
-  for (const model::Region& r : d.before.regions) {
-    if (!d.before.noise_known || r.p_family_wise > d.false_alarm_rate) continue;
-    if (shown++ == 0) fmt::print("Where the model fails most:\n");
-    fmt::print("  {}\n", r.says);
-    if (shown == kMostFailures) break;
-  }
-  if (shown > 0) fmt::print("\n");
-
-  const auto number = [](double value) {
-    return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("-");
-  };
-  TextTable ladder({{"model", "", TextTable::Align::kLeft},
-                    {"RMS", in},
-                    {"held-out RMS", in},
-                    {"noise floor", in}});
-  for (const model::LadderStep& step : d.ladder) {
-    ladder.add_row({step.added.empty() ? "as it came" : "+ " + step.added, number(step.rms),
-                    number(step.heldout_rms), number(d.noise_floor)});
-  }
-  fmt::print("{}\n", ladder.text());
-  print_bounds(d.bounds);
-  print_not_testable(d.not_testable);
-  if (!d.next_measurements.empty()) fmt::print("\nWhat to measure next:\n");
-  for (const model::NextMeasurement& n : d.next_measurements) {
-    // What would show effects never seen names them itself.
-    if (n.separation > 0.0) {
-      fmt::print("  {} (for {})\n", n.action, few_of(n.tells_apart));
-    } else {
-      fmt::print("  {}\n", n.action);
-    }
-  }
-  if (!options.report.empty()) fmt::print("\nReport: {}\n", options.report);
-  if (!options.output.empty()) fmt::print("\nModel written to {}\n", options.output);
-  fmt::print("\nNext: {}\n", next_step(d, options));
 }
 
 void clear_progress() {
@@ -199,35 +118,128 @@ Result<model::DiagnoseOptions> options_of(const DiagnoseOptions& options) {
   return out;
 }
 
-Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
+/// What every diagnosis of one call needs.
+struct Given {
+  config::ModelFile model;
+  model::DiagnoseOptions how;
+  std::optional<model::Table> quiet;
+};
+
+/// The static record is read into `given`, which has to stay where it is.
+Status read_given(const DiagnoseOptions& options, Given& given) {
   const auto file = config::find_config("models", options.model);
   if (!file) return file.error();
-  const auto model = config::load_model(*file);
+  auto model = config::load_model(*file);
   if (!model) return model.error();
+  given.model = std::move(*model);
+  auto how = options_of(options);
+  if (!how) return how.error();
+  given.how = std::move(*how);
+  if (options.quiet.empty()) return {};
+  DataOptions record = options.data;
+  record.data = {options.quiet};
+  record.segment.clear();
+  auto loaded = load_table(record, model::kMostRowsToRead);
+  if (!loaded) return loaded.error();
+  given.quiet = std::move(*loaded);
+  given.how.quiet = &*given.quiet;
+  return {};
+}
+
+ExitStatus status_of(const model::Diagnosis& d, const DiagnoseOptions& options) {
+  return options.check && !model::found_adequate(d) ? ExitStatus::kNo : ExitStatus::kDone;
+}
+
+/// One table of several, diagnosed by itself.
+struct OfEach {
+  DiagnoseOptions options;  ///< with its DATA alone
+  std::optional<Result<model::Diagnosis>> result;
+};
+
+Result<model::Diagnosis> diagnosed(const DiagnoseOptions& options, const Given& given) {
+  const auto table = load_table(options.data, model::kMostRowsToRead);
+  if (!table) return table.error();
+  return model::diagnose(*table, given.model, given.how);
+}
+
+void print_each(const OfEach& one, std::string_view unit) {
+  const std::string name = data_name(one.options.data);
+  if (!*one.result) {
+    fmt::print("{}: {}\n", name, one.result->error().message);
+    return;
+  }
+  const model::Diagnosis& d = **one.result;
+  fmt::print("{}: {}: {} RMS {:.3g} {}, noise floor {:.3g}.\n", name, model::verdict_of(d),
+             d.sentences.front(), d.after.rms, unit, d.noise_floor);
+}
+
+ordered_json json_of_each(const OfEach& one) {
+  ordered_json out{{"data", data_name(one.options.data)}};
+  if (!*one.result) {
+    out["error"] = one.result->error().message;
+  } else {
+    const model::Diagnosis& d = **one.result;
+    out.update(diagnosis_json(d, next_step(d, one.options)));
+  }
+  return out;
+}
+
+/// Several tables, each by itself, two at a time: with the seed that they share, what is said of
+/// one does not depend on the others. A table that cannot be read does not keep the others from
+/// being looked at.
+Result<ExitStatus> run_each(const DiagnoseOptions& options) {
+  if (!options.report.empty() || !options.output.empty()) {
+    return Error{ErrorCode::kUsage,
+                 "--each prints one line a table; --report and -o take one table"};
+  }
+  Given given;
+  if (Status read = read_given(options, given); !read) return read.error();
+  given.how.progress = {};
+  std::vector<OfEach> all;
+  for (const std::string& data : options.data.data) {
+    all.push_back({options, {}});
+    all.back().options.data.data = {data};
+  }
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < all.size(); i = next++) {
+      all[i].result.emplace(diagnosed(all[i].options, given));
+    }
+  };
+  std::thread other(work);
+  work();
+  other.join();
+
+  ExitStatus worst = ExitStatus::kDone;
+  ordered_json documents = ordered_json::array();
+  for (const OfEach& one : all) {
+    const ExitStatus its = *one.result ? status_of(**one.result, options)
+                                       : config::exit_status(one.result->error().code);
+    worst = std::max(worst, its);
+    if (options.json) {
+      documents.push_back(json_of_each(one));
+    } else {
+      print_each(one, config::unit_of(given.model.observable));
+    }
+  }
+  if (options.json) print_json(documents);
+  return worst;
+}
+
+Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
+  if (options.each) return run_each(options);
   const auto page_file = opened(options.report), model_file = opened(options.output);
   if (!page_file) return page_file.error();
   if (!model_file) return model_file.error();
   config::OutputFile *page = page_file->get(), *extended = model_file->get();
-  const auto table = load_table(options.data, model::kMostRowsToRead);
-  if (!table) return table.error();
-  auto how = options_of(options);
-  if (!how) return how.error();
-  std::optional<model::Table> quiet;
-  if (!options.quiet.empty()) {
-    DataOptions record = options.data;
-    record.data = {options.quiet};
-    record.segment.clear();
-    auto loaded = load_table(record, model::kMostRowsToRead);
-    if (!loaded) return loaded.error();
-    quiet = std::move(*loaded);
-    how->quiet = &*quiet;
-  }
-  const auto result = model::diagnose(*table, *model, *how);
+  Given given;
+  if (Status read = read_given(options, given); !read) return read.error();
+  const auto result = diagnosed(options, given);
   clear_progress();
   if (!result) return result.error();
   if (page) {
     const Status written =
-        put(*page, model::diagnosis_html(*result, *model, data_name(options.data)));
+        put(*page, model::diagnosis_html(*result, given.model, data_name(options.data)));
     if (!written) return written.error();
   }
   if (extended) {
@@ -238,10 +250,12 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
   if (options.json) {
     print_json(diagnosis_json(*result, next_step(*result, options)));
   } else {
-    print_text(*result, options, config::unit_of(model->observable));
+    print_diagnosis(*result, config::unit_of(given.model.observable));
+    if (!options.report.empty()) fmt::print("\nReport: {}\n", options.report);
+    if (!options.output.empty()) fmt::print("\nModel written to {}\n", options.output);
+    fmt::print("\nNext: {}\n", next_step(*result, options));
   }
-  const bool no = options.check && result->verdict != model::Verdict::kNothingMissing;
-  return no ? ExitStatus::kNo : ExitStatus::kDone;
+  return status_of(*result, options);
 }
 
 }  // namespace
@@ -250,7 +264,8 @@ void add_diagnose(CLI::App& app, Action& action) {
   add_command<DiagnoseOptions>(
       app, action, "diagnose", "Learn which effect a model lacks, and how sure that is",
       "  fogbench diagnose 7 --model magnetic\n"
-      "  fogbench diagnose 7 --model thermal --quiet 8 --report page.html -o wider.json\n",
+      "  fogbench diagnose 7 --model thermal --quiet 8 --report page.html -o wider.json\n"
+      "  fogbench diagnose --each run-*.csv --model magnetic\n",
       [](CLI::App& command, DiagnoseOptions& options) {
         add_data_options(command, options.data, DataCount::kSeveral);
         command.add_option("--model", options.model, "Model file, or a ready model's name")
@@ -263,6 +278,8 @@ void add_diagnose(CLI::App& app, Action& action) {
         command.add_option("-o,--output", options.output,
                            "Write the model with what was found, fitted");
         command.add_option("--seed", options.seed, "Of the simulated noise behind the p-values");
+        command.add_flag("--each", options.each,
+                         "Diagnose every DATA by itself: a line each, the worst exit status");
         command.add_flag("--check", options.check, "Exit with 1 unless nothing is missing");
         command.add_flag("--json", options.json, "One JSON document");
       },

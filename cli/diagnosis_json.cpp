@@ -69,36 +69,47 @@ ordered_json diagnosis_json(const model::Diagnosis& d, const std::string& next_s
                       {"rms", step.rms},
                       {"heldout_rms", step.heldout_rms}});
   }
+  std::vector<std::string> warnings = d.notes;
+  warnings.insert(warnings.end(), d.after.warnings.begin(), d.after.warnings.end());
+  ordered_json beside = ordered_json::array();
+  if (d.unexplained.beside_found) {
+    for (const model::MissingEffect& m : d.missing) beside.push_back(m.found.effect);
+  }
+  const std::string_view verdict = model::verdict_of(d);
   const std::string& suggestion = d.unexplained.suggestion;
   // Without times and durations the noise is only known to be independent from row to row.
   const auto noise = [&](double value) {
     return d.table.has("time_s") ? ordered_json(value) : ordered_json();
   };
-  return {{"verdict", model::name_of(d.verdict)},
-          {"p_adequate", d.p_adequate},
-          {"false_alarm_rate", d.false_alarm_rate},
-          {"fit",
-           {{"rms_deg_per_h", d.before.fit.rms},
-            {"heldout_rms_deg_per_h", d.heldout_rms},
-            {"noise_floor_deg_per_h", d.noise_floor}}},
-          {"noise",
-           {{"N_deg_per_sqrt_h", noise(d.noise.angle_random_walk_deg_per_sqrt_h)},
-            {"B_deg_per_h", noise(d.noise.bias_instability_deg_per_h)},
-            {"K_deg_per_h_per_sqrt_h", noise(d.noise.rate_random_walk_deg_per_h_per_sqrt_h)}}},
-          {"failures", failures},
-          {"missing", missing},
-          {"ambiguous", d.ambiguous},
-          {"unexplained",
-           {{"p_value", d.unexplained.p_value},
-            {"depends_on", d.unexplained.depends_on},
-            {"suggestion", suggestion.empty() ? ordered_json() : ordered_json(suggestion)}}},
-          {"not_testable", not_testable},
-          {"bounds", bounds},
-          {"next_measurements", next},
-          {"ladder", ladder},
-          {"sentences", d.sentences},
-          {"warnings", d.after.warnings},
-          {"next", next_step}};
+  return {
+      {"verdict", verdict},
+      {"p_adequate", verdict == "cannot_tell" ? ordered_json() : ordered_json(d.p_adequate)},
+      {"false_alarm_rate", d.false_alarm_rate},
+      {"fit",
+       {{"rms_deg_per_h", d.before.fit.rms},
+        {"heldout_rms_deg_per_h", d.heldout_rms},
+        {"noise_floor_deg_per_h", d.noise_floor}}},
+      {"noise",
+       {{"N_deg_per_sqrt_h", noise(d.noise.angle_random_walk_deg_per_sqrt_h)},
+        {"B_deg_per_h", noise(d.noise.bias_instability_deg_per_h)},
+        {"K_deg_per_h_per_sqrt_h", noise(d.noise.rate_random_walk_deg_per_h_per_sqrt_h)}}},
+      {"failures", failures},
+      {"missing", missing},
+      {"ambiguous", d.ambiguous},
+      {"unexplained",
+       {{"p_value", d.unexplained.p_value},
+        {"depends_on", d.unexplained.depends_on},
+        {"shape", d.unexplained.shape.empty() ? ordered_json() : ordered_json(d.unexplained.shape)},
+        {"suggestion", suggestion.empty() ? ordered_json() : ordered_json(suggestion)},
+        {"suggestion_beside", beside},
+        {"suggestion_heldout_rms", d.unexplained.heldout_rms}}},
+      {"not_testable", not_testable},
+      {"bounds", bounds},
+      {"next_measurements", next},
+      {"ladder", ladder},
+      {"sentences", d.sentences},
+      {"warnings", warnings},
+      {"next", next_step}};
 }
 
 }  // namespace fogbench::cli

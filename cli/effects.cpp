@@ -90,6 +90,10 @@ Result<ExitStatus> run_effects(const EffectsOptions& options) {
       "Where they are missing, temperature_rate_c_per_h and temperature_acceleration_c_per_h2 are\n"
       "derived from temperature_c and time_s, time_since_start_s from time_s; coil_heat is\n"
       "current_horizontal_a^2 + current_vertical_a^2, or else from coil_current_a or the fields.\n"
+      "Of any further column of the table (a supply voltage, a pressure) by its name:\n"
+      "  sensitivity(COLUMN), sensitivity_quadratic(COLUMN), sensitivity_rate(COLUMN) per hour,\n"
+      "  sensitivity_lagged(COLUMN) with tau, sensitivity_temperature_rate(COLUMN) times dT/dt,\n"
+      "  sensitivity_field_x(COLUMN), _y, _z times h\n"
       "`fogbench effects EFFECT` tells what excites one and what it is confused with.\n");
   return ExitStatus::kDone;
 }

@@ -16,6 +16,7 @@
 #include "config/rounding.hpp"
 #include "daemon/run_options.hpp"
 #include "model/fit.hpp"
+#include "model/row_order.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -118,8 +119,9 @@ Result<ExitStatus> run_fit(const FitCommandOptions& options) {
   if (!file) return file.error();
   const Result<config::ModelFile> model = config::load_model(*file);
   if (!model) return model.error();
-  const Result<model::Table> table = load_table(options.data);
+  Result<model::Table> table = load_table(options.data);
   if (!table) return table.error();
+  for (const std::string& note : model::mend_stamps(*table, model->observable)) print_note(note);
   Result<model::FitResult> result =
       model::fit(*table, *model, {.noise = options.noise, .weight_by = options.weight_by});
   if (!result) return result.error();

@@ -1,0 +1,104 @@
+#include "cli/diagnosis_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "cli/output.hpp"
+
+namespace fogbench::cli {
+namespace {
+
+/// "first, second" under each of the headings, in the order in which they first come.
+class GroupedLines {
+ public:
+  void add(const std::string& heading, const std::string& item) {
+    const auto found = std::find_if(lines_.begin(), lines_.end(),
+                                    [&](const auto& line) { return line.first == heading; });
+    if (found == lines_.end()) {
+      lines_.emplace_back(heading, item);
+    } else {
+      found->second += ", " + item;
+    }
+  }
+  void print(const std::string& title) const {
+    if (!lines_.empty()) fmt::print("{}\n", title);
+    for (const auto& [heading, items] : lines_) fmt::print("  {}: {}\n", heading, items);
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> lines_;
+};
+
+void print_bounds(const std::vector<model::Bound>& bounds) {
+  GroupedLines lines;
+  for (const model::Bound& b : bounds) {
+    lines.add(b.unit, fmt::format("{} {:.2g}", b.effect, b.absent_or_below));
+  }
+  lines.print("Absent, or smaller than this (95 %):");
+}
+
+void print_not_testable(const std::vector<model::NotTestable>& effects) {
+  GroupedLines lines;
+  for (const model::NotTestable& n : effects) lines.add(n.because, n.effect);
+  lines.print("Not testable with these data:");
+}
+
+std::string few_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 4;
+  const std::size_t shown = names.size() > kMost + 1 ? kMost : names.size();
+  const std::vector<std::string> first(names.begin(),
+                                       names.begin() + static_cast<std::ptrdiff_t>(shown));
+  const std::string rest =
+      shown < names.size() ? fmt::format(" and {} more", names.size() - shown) : std::string();
+  return fmt::format("{}{}", fmt::join(first, ", "), rest);
+}
+
+}  // namespace
+
+void print_diagnosis(const model::Diagnosis& d, std::string_view unit) {
+  const std::string in(unit);
+  for (const std::string& sentence : d.sentences) fmt::print("{}\n", sentence);
+  for (const std::string& note : d.notes) fmt::print("note: {}\n", note);
+  for (const std::string& warning : d.after.warnings) fmt::print("warning: {}\n", warning);
+  fmt::print("\n");
+  std::size_t shown = 0;
+  constexpr std::size_t kMostFailures = 3;
+  for (const model::Region& r : d.before.regions) {
+    if (!d.before.noise_known || r.p_family_wise > d.false_alarm_rate) continue;
+    if (shown++ == 0) fmt::print("Where the model fails most:\n");
+    fmt::print("  {}\n", r.says);
+    if (shown == kMostFailures) break;
+  }
+  if (shown > 0) fmt::print("\n");
+
+  const auto number = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("-");
+  };
+  TextTable ladder({{"model", "", TextTable::Align::kLeft},
+                    {"RMS", in},
+                    {"held-out RMS", in},
+                    {"noise floor", in}});
+  for (const model::LadderStep& step : d.ladder) {
+    ladder.add_row({step.added.empty() ? "as it came" : "+ " + step.added, number(step.rms),
+                    number(step.heldout_rms), number(d.noise_floor)});
+  }
+  fmt::print("{}\n", ladder.text());
+  print_bounds(d.bounds);
+  print_not_testable(d.not_testable);
+  if (!d.next_measurements.empty()) fmt::print("\nWhat to measure next:\n");
+  for (const model::NextMeasurement& n : d.next_measurements) {
+    // What would show effects never seen names them itself.
+    if (n.separation > 0.0) {
+      fmt::print("  {} (for {})\n", n.action, few_of(n.tells_apart));
+    } else {
+      fmt::print("  {}\n", n.action);
+    }
+  }
+}
+
+}  // namespace fogbench::cli
