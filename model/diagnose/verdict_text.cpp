@@ -92,9 +92,9 @@ std::string formula_sentence(const Diagnosis& d) {
   for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
   return fmt::format(
       "{}A formula to start from (a guess, as the expression of a term{}): {}; held-out RMS {:.3g} "
-      "deg/h, {:.1f} times the noise floor.",
+      "deg/h, beside a noise floor of {:.3g}.",
       shape, u.beside_found ? fmt::format(" beside {}", fmt::join(names, ", ")) : std::string(),
-      u.suggestion, u.heldout_rms, u.heldout_rms / d.noise_floor);
+      u.suggestion, u.heldout_rms, d.noise_floor);
 }
 
 }  // namespace
