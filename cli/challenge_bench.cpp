@@ -46,7 +46,9 @@ class PointRecord final : public procedures::Recorder {
 
 /// What the model leaves of the rate, RMS over the rows.
 Result<double> left_by(const config::ModelFile& model, const model::Table& table) {
-  const auto fitted = model::fit(table, model, {.noise = model::FitOptions::Noise::kIndependent});
+  const auto fitted = model::fit(
+      table, model,
+      {.noise = model::FitOptions::Noise::kIndependent, .weight_by = {}, .doubt_rows = false});
   if (!fitted) return fitted.error();
   return fitted->rms;
 }

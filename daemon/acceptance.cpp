@@ -51,7 +51,8 @@ Result<TestResults> results_of(const std::vector<Point>& points, const Acceptanc
   if (!chosen) return chosen.error();
   if (*chosen) {
     test.model = (*chosen)->name;
-    auto fitted = model::fit(to_table(points), **chosen, {});
+    // Every point that was accepted counts.
+    auto fitted = model::fit(to_table(points), **chosen, {.weight_by = {}, .doubt_rows = false});
     if (fitted) {
       test.fit = std::move(*fitted);
     } else {

@@ -11,6 +11,7 @@
 
 #include "config/units.hpp"
 #include "model/conclusions.hpp"
+#include "model/diagnose/first_look.hpp"
 #include "model/partition.hpp"
 #include "model/region_noise.hpp"
 
@@ -101,7 +102,7 @@ std::string place_of(const Region& region) {
 }
 
 Result<Comparison> compare(const Table& table, const config::ModelFile& model,
-                           const FitOptions& options, std::uint64_t seed) {
+                           const FitOptions& options, std::uint64_t seed, LookForEffects look) {
   auto fitted = fit(table, model, options);
   if (!fitted) return fitted.error();
   Comparison out;
@@ -112,7 +113,10 @@ Result<Comparison> compare(const Table& table, const config::ModelFile& model,
   auto noise = RegionNoise::make(table, options, out.fit, cells.partitions);
   if (!noise) return noise.error();
   out.noise_known = noise->known();
-  out.noise_floor = noise->known() && !noise->size_from_residual() ? noise->floor() : kMissing;
+  out.noise_floor = kMissing;
+  if (noise->known() && !noise->size_from_residual()) {
+    out.floor = noise->floor();
+  }
 
   if (noise->known()) {
     Eigen::VectorXd residual(static_cast<Eigen::Index>(cells.regions.size()));
@@ -140,7 +144,22 @@ Result<Comparison> compare(const Table& table, const config::ModelFile& model,
   for (Region& region : cells.regions) region.says = describe(region, unit, out.noise_known);
   out.regions = std::move(cells.regions);
   if (!out.regions.empty()) out.p_adequate = out.regions.front().p_family_wise;
+  const bool independent =
+      options.noise == FitOptions::Noise::kIndependent || !options.weight_by.empty();
+  if (look == LookForEffects::kYes && !out.as_is && !independent) {
+    if (const auto first = first_look(table, out.fit.fitted, options.prior);
+        first && first->looked) {
+      const double p_of_effects = first->p_value();
+      const double p_of_regions = std::min(1.0, out.p_adequate / kShareOfRegions);
+      if (p_of_effects < p_of_regions) out.looks_like = first->looks_like;
+      out.p_adequate = std::min(p_of_effects, p_of_regions);
+    }
+  }
 
+  // Beside a misfit the slow noise is the misfit's, in part: then the white part alone is sure.
+  if (std::isfinite(out.floor.white)) {
+    out.noise_floor = out.p_adequate < kAdequate ? out.floor.white : out.floor.beside(out.fit.rms);
+  }
   conclude(out, table, model, options, noise->says());
   return out;
 }

@@ -8,6 +8,10 @@
 //   cov(m) = W'Omega W                               (held: nothing was fitted away)
 //   p of the worst region: the share of draws of the noise whose largest |z| is at least its own
 //
+// A misfit need not move the mean of any range: a loop, a lag. So a fitted model is also held
+// against every effect of the catalogue, as a diagnosis does first (diagnose/first_look.hpp): what
+// that names is never called noise here.
+//
 // z is m_g over its standard error; under coloured noise on up to 1,000 windows it is the offset's
 // own likelihood ratio (region_score.hpp), which sees more. With independent noise of unknown size
 // the draws are divided by their own residual deviation.
@@ -18,6 +22,7 @@
 
 #include "config/result.hpp"
 #include "model/fit.hpp"
+#include "model/plausible_noise.hpp"
 #include "model/table.hpp"
 
 namespace fogbench::model {
@@ -60,15 +65,25 @@ struct Comparison {
   std::vector<RunChange> changes;
   std::vector<std::string> sentences;  ///< the conclusions, in the order to print them
   bool noise_known = false;            ///< from the table or the fit; else z and p mean nothing
-  double noise_floor = 0.0;            ///< RMS that white noise alone would leave; NaN when unknown
-  double p_adequate = 1.0;             ///< of the worst region
+  /// RMS that noise alone would leave, beside that of the fit (NoiseFloor::beside); where the model
+  /// fails, its white part, which no misfit can pass for; NaN: unknown.
+  double noise_floor = 0.0;
+  NoiseFloor floor;  ///< its parts, where they are known
+  /// Chance that noise alone makes some range, or the lead of some effect, stand out as much.
+  double p_adequate = 1.0;
+  std::string looks_like;  ///< the effect or shape that stands out, where one does
 };
 
 /// The model is adequate unless p_adequate is below this.
 inline constexpr double kAdequate = 0.05;
 
+/// Whether a fitted model is also held against every effect (the first step of a diagnosis): a
+/// diagnosis that takes that step itself does not ask for it.
+enum class LookForEffects { kYes, kNo };
+
 /// `seed` of the draws behind p_family_wise. Errors: those of fit().
 Result<Comparison> compare(const Table& table, const config::ModelFile& model,
-                           const FitOptions& options, std::uint64_t seed = 1);
+                           const FitOptions& options, std::uint64_t seed = 1,
+                           LookForEffects look = LookForEffects::kYes);
 
 }  // namespace fogbench::model

@@ -86,8 +86,15 @@ void say_fit(Comparison& c, std::string_view unit, const std::string& noise_says
                                  c.as_is ? "The model, held as given," : "The fitted model",
                                  c.fit.rms, unit, c.fit.rows.size());
   if (std::isfinite(c.noise_floor)) {
-    text += fmt::format(" {} noise alone would leave {:.3g} {}.",
-                        c.fit.coloured ? "White" : "The stated", c.noise_floor, unit);
+    const bool fails = c.p_adequate < kAdequate;
+    const std::string_view which = !c.fit.coloured ? "The stated noise"
+                                   : fails         ? "White noise"
+                                                   : "Noise";
+    text += fmt::format(" {} alone would leave {:.3g} {}.", which, c.noise_floor, unit);
+    if (c.fit.coloured && !fails) {
+      text.back() = ':';
+      text += " " + c.floor.parts_in_words(unit) + ".";
+    }
   }
   c.sentences.push_back(std::move(text));
   const bool fails = c.noise_known && c.p_adequate < kAdequate;
@@ -99,28 +106,34 @@ void say_fit(Comparison& c, std::string_view unit, const std::string& noise_says
 
 void say_regions(Comparison& c, const Table& table, const config::ModelFile& model,
                  std::string_view unit) {
-  if (c.regions.empty()) {
+  const bool fails = c.noise_known && c.p_adequate < kAdequate;
+  const bool some_range = !c.regions.empty() && c.regions.front().p_family_wise < kAdequate;
+  if (fails) {
+    c.sentences.push_back(fmt::format(
+        "That is more than noise explains ({}){}.{}", probability_text(c.p_adequate),
+        c.looks_like.empty() ? std::string()
+                             : fmt::format(": what is left looks like {}, and \"fogbench "
+                                           "diagnose\" says what it is",
+                                           c.looks_like),
+        some_range ? " The worst ranges:" : ""));
+    if (!some_range) return;
+  } else if (c.regions.empty()) {
     c.sentences.push_back("All rows are alike: there are no ranges to look at one by one.");
     return;
-  }
-  const bool fails = c.noise_known && c.p_adequate < kAdequate;
-  if (!c.noise_known) {
+  } else if (!c.noise_known) {
     c.sentences.push_back(
         "Whether the misses are more than noise cannot be said; the largest come first:");
   } else if (c.regions.front().z == 0.0) {
     c.sentences.push_back(
         "The fitted terms leave no range free to differ from the measurements on average.");
     return;
-  } else if (!fails) {
+  } else {
     c.sentences.push_back(
         fmt::format("No more than noise explains: the worst of {} ranges would stand out as much "
                     "by chance with "
                     "{}. ({})",
                     c.regions.size(), probability_text(c.p_adequate), c.regions.front().says));
     return;
-  } else {
-    c.sentences.push_back(fmt::format("That is more than noise explains ({}). The worst ranges:",
-                                      probability_text(c.p_adequate)));
   }
   for (std::size_t i = 0; i < std::min(c.regions.size(), kMostRegionsSaid); ++i) {
     const Region& region = c.regions[i];

@@ -96,31 +96,10 @@ Status fit_independent(FitWork& work) {
   return {};
 }
 
-/// X and T = dy/da at the current solution, and y, on the windows.
-struct Linearised {
-  Eigen::MatrixXd x;
-  Eigen::VectorXd y;
-};
-
-Linearised linearise(const FitWork& work) {
-  const Eigen::Index free = work.free();
-  const Eigen::MatrixXd rows = work.observations.window_rows(work.inner, work.inner.size() > 0);
-  Linearised result{Eigen::MatrixXd::Zero(rows.rows(), work.unknowns()), rows.col(rows.cols() - 1)};
-  result.x.leftCols(free) = rows.leftCols(free);
-  const std::vector<Tangent> tangents = work.design.tangents();
-  for (std::size_t i = 0; i < tangents.size(); ++i) {
-    const Tangent& tangent = tangents[i];
-    const double coefficient = tangent.column < 0 ? tangent.held : work.beta[tangent.column];
-    result.x.col(free + tangent.parameter) +=
-        coefficient * rows.col(free + static_cast<Eigen::Index>(i));
-  }
-  return result;
-}
-
 /// Noise by restricted likelihood and coefficients by generalised least squares, in turn with the
 /// inner parameters under the whitened residual. `work` holds the independent solution.
 Status fit_coloured(FitWork& work) {
-  Result<NoiseShapes> shapes = NoiseShapes::make(work.observations.windows());
+  Result<NoiseShapes> shapes = NoiseShapes::make(work.observations.windows(), work.options.prior);
   if (!shapes) return shapes.error();
   std::optional<GlsResult> last;
   // The noise settles in two or three turns: its shape comes from a coarse grid.
@@ -136,7 +115,8 @@ Status fit_coloured(FitWork& work) {
       work.inner = solution->inner;
       work.beta = solution->fit.beta;
     }
-    const Linearised system = linearise(work);
+    const Linearised system =
+        linearise(work, work.observations.window_rows(work.inner, work.inner.size() > 0));
     Result<GlsResult> found = gls(*shapes, system.x, system.y);
     if (!found) return found.error();
     last = std::move(*found);
@@ -167,7 +147,7 @@ Result<bool> choose_coloured(FitWork& work) {
   }
   const bool enough =
       work.observations.taken().size() >= static_cast<std::size_t>(work.unknowns()) + kEnoughRows;
-  const bool timed = work.table.has("time_s") && work.table.has("duration_s");
+  const bool timed = work.table.has("time_s");
   if (wanted == FitOptions::Noise::kAuto && (!timed || !enough)) return false;
   const Status windows = work.observations.use_windows(kMostFittedWindows);
   if (windows) return true;
@@ -200,6 +180,7 @@ Result<FitResult> hold(FitWork work) {
   fill_residuals(work);
   FitOptions free_options = work.options;
   free_options.as_is = false;
+  free_options.doubt_rows = false;  // its noise is wanted on the same rows
   const Result<FitResult> free = fit(work.table, work.model, free_options);
   if (free && free->degrees_of_freedom > 0.0) {
     result.noise = free->noise;
@@ -224,6 +205,18 @@ Result<FitResult> hold(FitWork work) {
   return std::move(result);
 }
 
+/// The fit anew, without these rows.
+Result<FitResult> fit_without(const FitWork& work, std::vector<LeftOut> bad) {
+  FitOptions options = work.options;
+  options.doubt_rows = false;
+  for (const LeftOut& row : bad) options.leave_out.push_back(row.row);
+  auto again = fit(work.table, work.model, options);
+  if (!again) return again;
+  for (const LeftOut& row : bad) again->warnings.push_back(row.says);
+  again->left_out = std::move(bad);
+  return again;
+}
+
 }  // namespace
 
 double coverage_factor(double degrees_of_freedom) {
@@ -232,13 +225,27 @@ double coverage_factor(double degrees_of_freedom) {
   return boost::math::quantile(distribution, (1.0 + kCoverage) / 2.0);
 }
 
+Linearised linearise(const FitWork& work, const Eigen::MatrixXd& rows) {
+  const Eigen::Index free = work.free();
+  Linearised result{Eigen::MatrixXd::Zero(rows.rows(), work.unknowns()), rows.col(rows.cols() - 1)};
+  result.x.leftCols(free) = rows.leftCols(free);
+  const std::vector<Tangent> tangents = work.design.tangents();
+  for (std::size_t i = 0; i < tangents.size(); ++i) {
+    const Tangent& tangent = tangents[i];
+    const double coefficient = tangent.column < 0 ? tangent.held : work.beta[tangent.column];
+    result.x.col(free + tangent.parameter) +=
+        coefficient * rows.col(free + static_cast<Eigen::Index>(i));
+  }
+  return result;
+}
+
 Result<FitResult> fit(const Table& table, const config::ModelFile& model,
                       const FitOptions& options) {
   const Signals signals(table, model.reference_temperature_c);
   Result<Design> design = Design::make(signals, model, options.as_is);
   if (!design) return design.error();
   Result<Observations> observations =
-      Observations::make(signals, *design, model.observable, options.weight_by);
+      Observations::make(signals, *design, model.observable, options.weight_by, options.leave_out);
   if (!observations) return observations.error();
   FitWork work{table, model, options, signals, *design, *observations, {}, {}, {}, {}, 2.0};
   if (options.as_is) return hold(std::move(work));
@@ -254,6 +261,10 @@ Result<FitResult> fit(const Table& table, const config::ModelFile& model,
   if (Status fitted = fit_independent(work); !fitted) return fitted.error();
   if (*coloured) {
     if (Status fitted = fit_coloured(work); !fitted) return fitted.error();
+  }
+  if (options.doubt_rows) {
+    std::vector<LeftOut> bad = find_left_out(work);
+    if (!bad.empty()) return fit_without(work, std::move(bad));
   }
   fill_residuals(work);
   if (*coloured) {

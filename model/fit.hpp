@@ -14,19 +14,23 @@
 #include "config/model_file.hpp"
 #include "config/result.hpp"
 #include "model/noise.hpp"
+#include "model/noise_prior.hpp"
 #include "model/table.hpp"
 
 namespace fogbench::model {
 
 struct FitOptions {
   enum class Noise {
-    kAuto,  ///< coloured when the table has time_s and duration_s and rows enough, else independent
+    kAuto,  ///< coloured when the table has time_s and rows enough, else independent
     kIndependent,
     kColoured
   };
   Noise noise = Noise::kAuto;
-  std::string weight_by;  ///< a column of standard deviations; empty: none
-  bool as_is = false;     ///< hold every given coefficient, fit nothing
+  std::string weight_by;                    ///< a column of standard deviations; empty: none
+  bool as_is = false;                       ///< hold every given coefficient, fit nothing
+  NoisePrior prior = {};                    ///< of coloured noise
+  bool doubt_rows = true;                   ///< look for single bad readings, and leave them out
+  std::vector<std::size_t> leave_out = {};  ///< rows of the table that take no part
 };
 
 /// Student's t of 95.45 % coverage: 2 for many degrees of freedom, more for few, NaN for none.
@@ -42,18 +46,32 @@ struct Estimate {
   bool held = false;
 };
 
+/// A row that was not believed (bad_rows.hpp).
+struct LeftOut {
+  std::size_t row = 0;  ///< of the table
+  double off = 0.0;     ///< from what the other rows say of it, unit of the observable
+  double sigmas = 0.0;
+  std::string says;  ///< which row that is, and by how much it is off
+};
+
 struct FitResult {
   config::ModelFile fitted;  ///< with coefficients, covariance, noise: a valid input again
   std::vector<Estimate> estimates;
   Eigen::MatrixXd covariance;     ///< of the estimates that are not held, in their order
   std::vector<std::size_t> rows;  ///< which rows of the table took part (no NaN in what is needed)
+  std::vector<LeftOut> left_out;  ///< single bad readings, worst first; each is a warning too
   Eigen::VectorXd predicted;      ///< one per taken row
   Eigen::VectorXd residual;       ///< observed - predicted
   Eigen::VectorXd standard_deviation;  ///< what the noise model expects of each residual
   Eigen::VectorXd whitened;            ///< residual in units of its noise, correlation removed
   NoiseEstimate noise;
   bool coloured = false;
-  double rms = 0.0;  ///< sqrt(mean residual^2), unit of the observable
+  Windows windows;  ///< on which coloured noise was estimated, else empty
+  /// Mean variance of white noise of 1 deg/sqrt(h) in a row beyond that in its window of joined
+  /// rows.
+  double white_beside_windows = 0.0;
+  std::vector<Eigen::Index> window_of;  ///< of each taken row
+  double rms = 0.0;                     ///< sqrt(mean residual^2), unit of the observable
   double residual_sum_of_squares = 0.0;
   double residual_standard_deviation = 0.0;  ///< sqrt(RSS / dof)
   double degrees_of_freedom = 0.0;

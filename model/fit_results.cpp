@@ -69,6 +69,14 @@ Status fill_coloured_noise(FitWork& work) {
   Result<std::unique_ptr<Whitener>> whitener =
       make_whitener(work.observations.windows(), result.noise.noise);
   if (!whitener) return whitener.error();
+  result.windows = work.observations.windows();
+  result.window_of = work.observations.bin_of();
+  result.white_beside_windows = 0.0;
+  for (std::size_t i = 0; i < result.window_of.size(); ++i) {
+    result.white_beside_windows += 3600.0 / work.observations.length_s(i) -
+                                   3600.0 / result.windows.duration_s[result.window_of[i]];
+  }
+  result.white_beside_windows /= static_cast<double>(result.window_of.size());
   const Eigen::VectorXd deviation = (*whitener)->standard_deviation();
   const std::vector<Eigen::Index>& bin_of = work.observations.bin_of();
   if (work.observations.windows().rows() == result.residual.size()) {
@@ -76,11 +84,10 @@ Status fill_coloured_noise(FitWork& work) {
     result.whitened = (*whitener)->whiten(result.residual);
     return {};
   }
-  const Signals::View duration = work.signals.signal("duration_s");
   const double n = result.noise.noise.angle_random_walk_deg_per_sqrt_h;
   result.standard_deviation.resize(result.residual.size());
   for (std::size_t i = 0; i < bin_of.size(); ++i) {
-    const double own = duration[static_cast<Eigen::Index>(work.observations.taken()[i])];
+    const double own = work.observations.length_s(i);
     const double joined = work.observations.windows().duration_s[bin_of[i]];
     const double white = n * n * 3600.0 * (1.0 / own - 1.0 / joined);
     result.standard_deviation[static_cast<Eigen::Index>(i)] =

@@ -28,6 +28,15 @@ struct FitWork {
   Eigen::Index unknowns() const { return free() + inner.size(); }
 };
 
+/// X, T = dy/da at the current solution, and y, from rows [X D y] of the observations.
+struct Linearised {
+  Eigen::MatrixXd x;
+  Eigen::VectorXd y;
+};
+Linearised linearise(const FitWork& work, const Eigen::MatrixXd& rows);
+
+/// Single rows that the rest of them contradicts.
+std::vector<LeftOut> find_left_out(const FitWork& work);
 /// Predicted values, residuals and their size; needs degrees_of_freedom.
 void fill_residuals(FitWork& work);
 /// Independent noise: sigma is estimated, as a whole or as a factor on the weights.

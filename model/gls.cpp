@@ -146,7 +146,12 @@ NoiseCoefficients refine(const NoiseShapes& shapes, const Problem& problem, Nois
       const bool same = b != 0.0 ? trial.bias_instability_deg_per_h == 0.0
                                  : trial.rate_random_walk_deg_per_h_per_sqrt_h == 0.0;
       if (same) continue;
-      const double weight = problem.solve(*shapes.whitener(trial)).log_weight;
+      if (trial.bias_instability_deg_per_h > shapes.prior().b_over_n.most() ||
+          trial.rate_random_walk_deg_per_h_per_sqrt_h > shapes.prior().k_over_n.most()) {
+        continue;
+      }
+      const double weight =
+          problem.solve(*shapes.whitener(trial)).log_weight + shapes.log_prior(trial);
       if (weight > best_weight) {
         best = trial;
         best_weight = weight;
@@ -251,13 +256,15 @@ Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const Vector
   double best_without_k = best_without_b;
   for (std::size_t i = 0; i < (too_few ? 1 : shapes.size()); ++i) {
     solutions.push_back(problem.solve(*shapes.whitener(i)));
+    const double likelihood = solutions[i].log_weight;
     solutions[i].log_weight += shapes.log_prior(i);
-    const double weight = solutions[i].log_weight;
-    if (weight > solutions[best].log_weight) best = i;
+    if (solutions[i].log_weight > solutions[best].log_weight) best = i;
     const NoiseCoefficients& shape = shapes.shape(i);
-    if (shape.bias_instability_deg_per_h == 0.0) best_without_b = std::max(best_without_b, weight);
+    if (shape.bias_instability_deg_per_h == 0.0) {
+      best_without_b = std::max(best_without_b, likelihood);
+    }
     if (shape.rate_random_walk_deg_per_h_per_sqrt_h == 0.0) {
-      best_without_k = std::max(best_without_k, weight);
+      best_without_k = std::max(best_without_k, likelihood);
     }
   }
 

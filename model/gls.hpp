@@ -7,16 +7,16 @@
 // N is integrated out with a prior flat in log N above the anchor: the median of
 // standard error^2 x duration where the windows state one, else zero. The stated error holds white
 // noise only, so the real N may lie above it, never below. The shapes form a grid in the logarithms
-// of B and K plus the corners where they are zero. The prior is flat in log B and in sqrt(K): flat
-// in log K, a walk was believed too small, and intervals under a pure walk held the truth in 89 %
-// of cases instead of 92 %. beta and its covariance are averaged over the grid with the posterior
-// weights, so that not knowing the noise widens the intervals.
+// of B and K plus the corners where they are zero, weighed by what instruments do
+// (noise_prior.hpp). beta and its covariance are averaged over the grid with the posterior weights,
+// so that not knowing the noise widens the intervals.
 
 #include <Eigen/Core>
 #include <memory>
 #include <vector>
 
 #include "model/noise.hpp"
+#include "model/noise_prior.hpp"
 
 namespace fogbench::model {
 
@@ -30,17 +30,20 @@ inline constexpr double kTwoSigma = 0.9544997361036416;
 class NoiseShapes {
  public:
   /// Errors as check_windows.
-  static Result<NoiseShapes> make(const Windows& windows);
+  static Result<NoiseShapes> make(const Windows& windows, const NoisePrior& prior = {});
 
   std::size_t size() const { return shapes_.size(); }
   Eigen::Index rows() const { return rows_; }
   /// With N = 1 deg/sqrt(h). Shape 0 is white.
   const NoiseCoefficients& shape(std::size_t i) const { return shapes_[i]; }
   double log_prior(std::size_t i) const { return log_prior_[i]; }
+  /// Of any shape, per cell of the grid: comparable with that of the grid's own.
+  double log_prior(const NoiseCoefficients& shape) const;
+  const NoisePrior& prior() const { return prior_; }
   std::shared_ptr<const Whitener> whitener(std::size_t i) const;
   /// Whitener of any noise on the same windows.
   std::unique_ptr<Whitener> whitener(const NoiseCoefficients& noise) const;
-  /// Lower bound of N from the stated standard errors; 0 where there are none.
+  /// Lower bound of N from the stated standard errors or the prior; 0 where there are none.
   double anchor() const { return anchor_; }
   /// Ratio of neighbouring non-zero B and K values of the grid.
   double step_of_b() const { return step_of_b_; }
@@ -48,6 +51,7 @@ class NoiseShapes {
 
  private:
   std::shared_ptr<const WindowGeometry> geometry_;
+  NoisePrior prior_;
   std::vector<NoiseCoefficients> shapes_;
   std::vector<double> log_prior_;
   std::vector<std::shared_ptr<const Whitener>> kept_;
@@ -55,6 +59,8 @@ class NoiseShapes {
   double anchor_ = 0.0;
   double step_of_b_ = 1.0;
   double step_of_k_ = 1.0;
+  double log_prior_without_b_ = 0.0;
+  double log_prior_without_k_ = 0.0;
 };
 
 /// log of the likelihood of a shape's whitened residual squares, N integrated out above the anchor:

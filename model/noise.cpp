@@ -1,5 +1,6 @@
 #include "model/noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/window_geometry.hpp"
@@ -9,6 +10,7 @@ namespace {
 
 // One state for each term of the ladder and one for the walk; see kMostTerms of the ladder.
 constexpr int kMostStates = 10;
+constexpr Eigen::Index kColumnsAtATime = 64;
 using State = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1>;
 using StateCovariance =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostStates, kMostStates>;
@@ -28,7 +30,7 @@ class StateSpaceWhitener final : public Whitener {
         noise.angle_random_walk_deg_per_sqrt_h * noise.angle_random_walk_deg_per_sqrt_h;
     k2_ = noise.rate_random_walk_deg_per_h_per_sqrt_h * noise.rate_random_walk_deg_per_h_per_sqrt_h;
     flicker_variance_ = b2 * g.ladder.variance_per_b2;
-    white_variance_ = n2 / g.duration_h;
+    white_variance_ = n2 * g.white_per_n2;
     terms_ = g.phi.rows();
     gain_.resize(terms_ + 1, g.rows());
     deviation_.resize(g.rows());
@@ -39,16 +41,15 @@ class StateSpaceWhitener final : public Whitener {
   }
 
   Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns) const override {
-    Eigen::MatrixXd out = columns.transpose();
-    for_each_run([&](Eigen::Index first, Eigen::Index last) {
-      Eigen::MatrixXd state = Eigen::MatrixXd::Zero(columns.cols(), terms_ + 1);
-      for (Eigen::Index i = first; i < last; ++i) {
-        out.col(i).noalias() -= state * phi(i);
-        advance(state, i, out.col(i));
-        out.col(i) /= deviation_[i];
-      }
-    });
-    return out.transpose();
+    // In blocks whose states stay in the fastest cache.
+    Eigen::MatrixXd out(columns.rows(), columns.cols());
+    for (Eigen::Index first = 0; first < columns.cols(); first += kColumnsAtATime) {
+      const Eigen::Index count = std::min(kColumnsAtATime, columns.cols() - first);
+      Eigen::MatrixXd block = columns.middleCols(first, count).transpose();
+      whiten_transposed(block);
+      out.middleCols(first, count) = block.transpose();
+    }
+    return out;
   }
 
   Eigen::MatrixXd colour(const Eigen::MatrixXd& columns) const override {
@@ -95,6 +96,18 @@ class StateSpaceWhitener final : public Whitener {
     phi.head(terms_) = geometry_->phi.col(i);
     phi[terms_] = 1.0;
     return phi;
+  }
+
+  /// One column of the data a row.
+  void whiten_transposed(Eigen::MatrixXd& block) const {
+    for_each_run([&](Eigen::Index first, Eigen::Index last) {
+      Eigen::MatrixXd state = Eigen::MatrixXd::Zero(block.rows(), terms_ + 1);
+      for (Eigen::Index i = first; i < last; ++i) {
+        block.col(i).noalias() -= state * phi(i);
+        advance(state, i, block.col(i));
+        block.col(i) /= deviation_[i];
+      }
+    });
   }
 
   template <class Run>
@@ -216,7 +229,7 @@ Result<Eigen::MatrixXd> noise_covariance(const Windows& windows, const NoiseCoef
     const auto first = static_cast<Eigen::Index>(g.run_begin[run]);
     const auto last = static_cast<Eigen::Index>(g.run_begin[run + 1]);
     for (Eigen::Index i = first; i < last; ++i) {
-      omega(i, i) = n2 / g.duration_h[i] + flicker * g.mean_total[i] +
+      omega(i, i) = n2 * g.white_per_n2[i] + flicker * g.mean_total[i] +
                     k2 * (g.start_h[i] + g.duration_h[i] / 3.0);
       const double centre_h = g.start_h[i] + 0.5 * g.duration_h[i];
       for (Eigen::Index j = i + 1; j < last; ++j) {

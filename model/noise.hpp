@@ -2,7 +2,7 @@
 // Noise of window averages in IEEE 952 terms, as a covariance and as the whitening that undoes it.
 //
 //   y = X beta + e,  cov(e) = Omega,  blocks independent between runs
-//   Omega = white: N^2/tau on the diagonal (tau in hours)
+//   Omega = white: N^2/tau on the diagonal (tau in hours), times what the row's stated error says
 //         + flicker: Ornstein-Uhlenbeck terms log-spaced by a ratio r, variances B^2 ln(r)/pi each
 //         + rate random walk: K times a Wiener process that is zero where the run starts
 //
@@ -30,9 +30,15 @@ struct Windows {
   Eigen::VectorXd centre_s;
   Eigen::VectorXd duration_s;
   Eigen::VectorXd white_floor;  ///< stated standard error of each row, 0 when unknown, deg/h
+  /// White variance of each row over N^2/tau (stated_errors.hpp); empty: 1 in all of them.
+  Eigen::VectorXd white_scale = {};
 
   Eigen::Index rows() const { return centre_s.size(); }
 };
+
+/// Rows without usable times are taken to follow each other in windows of this length, as a bench's
+/// averages do, so that what instruments do in an hour (noise_prior.hpp) means something.
+inline constexpr double kUntimedWindow_s = 180.0;
 
 /// kBadInput when windows overlap, run backwards, have no duration, or no number.
 Status check_windows(const Windows& windows);

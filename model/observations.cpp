@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/stated_errors.hpp"
+
 namespace fogbench::model {
 namespace {
 
@@ -15,8 +17,8 @@ Eigen::Index index_of(std::size_t i) {
 }  // namespace
 
 Result<Observations> Observations::make(const Signals& signals, const Design& design,
-                                        const std::string& observable,
-                                        const std::string& weight_by) {
+                                        const std::string& observable, const std::string& weight_by,
+                                        const std::vector<std::size_t>& left_out) {
   Observations result(signals, design);
   result.observable_ = observable;
   const Table& table = signals.table();
@@ -36,6 +38,8 @@ Result<Observations> Observations::make(const Signals& signals, const Design& de
       return std::isnan(v[index_of(row)]);
     });
     if (!complete) continue;
+    const std::size_t its = signals.table_row(row);
+    if (std::find(left_out.begin(), left_out.end(), its) != left_out.end()) continue;
     if (!weight_by.empty()) {
       sigma.push_back(views.back()[index_of(row)]);
       if (!(sigma.back() > 0.0)) {
@@ -58,6 +62,7 @@ Result<Observations> Observations::make(const Signals& signals, const Design& de
     return config::bad_input(
         "found no row in which every column that the model needs has a number");
   }
+  result.lengths_s_ = result.window_lengths();
   if (!sigma.empty()) result.sigma_ = Eigen::VectorXd::Map(sigma.data(), index_of(sigma.size()));
   return result;
 }
@@ -69,12 +74,39 @@ Eigen::VectorXd Observations::observed() const {
   return result;
 }
 
+Eigen::VectorXd Observations::window_lengths() const {
+  if (!signals_->table().has("time_s")) return {};
+  if (signals_->table().has("duration_s")) return signals_->signal("duration_s");
+  const Signals::View time = signals_->signal("time_s");
+  Eigen::VectorXd to_next = Eigen::VectorXd::Constant(time.size(), kMissing);
+  std::vector<double> steps;
+  for (const Signals::RunRange& run : signals_->runs()) {
+    for (std::size_t i = run.begin; i + 1 < run.end; ++i) {
+      const double step = time[index_of(i + 1)] - time[index_of(i)];
+      to_next[index_of(i)] = step;
+      if (step > 0.0) steps.push_back(step);
+    }
+  }
+  double usual = kUntimedWindow_s;
+  if (!steps.empty()) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    usual = *middle;
+  }
+  Eigen::VectorXd out(time.size());
+  for (Eigen::Index i = 0; i < out.size(); ++i) {
+    out[i] = usual;
+    if (to_next[i] > 0.0) out[i] = std::min(out[i], to_next[i]);
+    if (i > 0 && to_next[i - 1] > 0.0) out[i] = std::min(out[i], to_next[i - 1]);
+  }
+  return out;
+}
+
 Result<Windows> Observations::row_windows() const {
-  for (const char* name : {"time_s", "duration_s"}) {
-    if (!signals_->table().has(name)) return config::bad_input(signals_->table().why_missing(name));
+  if (!signals_->table().has("time_s")) {
+    return config::bad_input(signals_->table().why_missing("time_s"));
   }
   const Signals::View time = signals_->signal("time_s");
-  const Signals::View duration = signals_->signal("duration_s");
   const bool stated = signals_->available("rate_std_error_deg_per_h");
   const Signals::View error =
       stated ? signals_->signal("rate_std_error_deg_per_h") : Signals::View(nullptr, 0);
@@ -89,13 +121,30 @@ Result<Windows> Observations::row_windows() const {
     for (; i < taken_.size() && taken_[i] < run.end; ++i) {
       const Eigen::Index row = index_of(taken_[i]);
       windows.centre_s[index_of(i)] = time[row];
-      windows.duration_s[index_of(i)] = duration[row];
+      windows.duration_s[index_of(i)] = lengths_s_[row];
       if (stated && error[row] > 0.0) windows.white_floor[index_of(i)] = error[row];
     }
   }
   windows.run_begin.push_back(taken_.size());
   if (Status checked = check_windows(windows); !checked) return checked.error();
   return windows;
+}
+
+Windows Observations::row_windows_or_sequence() const {
+  if (auto windows = row_windows()) return std::move(*windows);
+  Windows out;
+  const Eigen::Index count = index_of(taken_.size());
+  std::size_t i = 0;
+  for (const Signals::RunRange& run : signals_->runs()) {
+    if (i < taken_.size() && taken_[i] < run.end) out.run_begin.push_back(i);
+    while (i < taken_.size() && taken_[i] < run.end) ++i;
+  }
+  out.run_begin.push_back(taken_.size());
+  out.duration_s = Eigen::VectorXd::Constant(count, kUntimedWindow_s);
+  out.centre_s =
+      kUntimedWindow_s * Eigen::VectorXd::LinSpaced(count, 0.5, static_cast<double>(count) - 0.5);
+  out.white_floor = Eigen::VectorXd::Zero(count);
+  return out;
 }
 
 Status Observations::use_windows(std::size_t bins) {
@@ -128,6 +177,7 @@ Status Observations::use_windows(std::size_t bins) {
   windows_.centre_s = vector(centre);
   windows_.duration_s = vector(duration);
   windows_.white_floor = vector(floor);
+  windows_.white_scale = stated_white_scale(windows_);
   return {};
 }
 
@@ -165,8 +215,20 @@ std::optional<Eigen::MatrixXd> Observations::triangle(const Eigen::VectorXd& inn
   return reduction->triangle();
 }
 
+Eigen::MatrixXd Observations::rows(const Eigen::VectorXd& inner, bool with_tangents) const {
+  Eigen::MatrixXd out;
+  const auto add = [&](std::size_t begin, Eigen::Ref<Eigen::MatrixXd> rows) {
+    if (out.size() == 0) out.resize(index_of(taken_.size()), rows.cols());
+    for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+      const Eigen::Index place = place_[begin + static_cast<std::size_t>(row)];
+      if (place >= 0) out.row(place) = rows.row(row);
+    }
+  };
+  design_->visit(inner, with_tangents, signals_->signal(observable_), add);
+  return out;
+}
+
 Eigen::MatrixXd Observations::window_rows(const Eigen::VectorXd& inner, bool with_tangents) const {
-  const Signals::View duration = signals_->signal("duration_s");
   Eigen::MatrixXd sums;
   const auto add = [&](std::size_t begin, Eigen::Ref<Eigen::MatrixXd> rows) {
     if (sums.size() == 0) sums = Eigen::MatrixXd::Zero(windows_.rows(), rows.cols());
@@ -174,7 +236,7 @@ Eigen::MatrixXd Observations::window_rows(const Eigen::VectorXd& inner, bool wit
       const std::size_t at = begin + static_cast<std::size_t>(row);
       if (place_[at] < 0) continue;
       const Eigen::Index bin = bin_of_[static_cast<std::size_t>(place_[at])];
-      sums.row(bin) += duration[index_of(at)] / windows_.duration_s[bin] * rows.row(row);
+      sums.row(bin) += lengths_s_[index_of(at)] / windows_.duration_s[bin] * rows.row(row);
     }
   };
   design_->visit(inner, with_tangents, signals_->signal(observable_), add);

@@ -17,8 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kWorlds = 9999;
-// Coloured noise over more rows than this is followed on joined windows.
-constexpr std::size_t kMostWindows = 10000;
+constexpr std::uint64_t kFloorSeed = 20260102;
 // With many rows the plausible noise models are few and alike; those below this weight are not
 // worth a pass over the rows.
 constexpr double kLeastWeight = 0.01;
@@ -26,41 +25,6 @@ constexpr double kLeastWeight = 0.01;
 constexpr double kManyDegrees = 1000.0;
 constexpr Index kMostScored = 1000;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-/// Rows joined into windows: one after the other, never across a run.
-struct Bins {
-  Windows windows;
-  std::vector<Index> of_row;
-};
-
-Bins make_bins(const Table& table, const std::vector<std::size_t>& rows) {
-  const std::span<const double> time = table.column("time_s");
-  const std::span<const double> duration = table.column("duration_s");
-  const std::size_t chunk = (rows.size() + kMostWindows - 1) / kMostWindows;
-  Bins bins;
-  std::vector<double> start, end;
-  std::size_t filled = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::size_t row = rows[i];
-    const bool new_run = i == 0 || table.run().index[row] != table.run().index[rows[i - 1]];
-    if (new_run) bins.windows.run_begin.push_back(start.size());
-    if (new_run || filled == chunk) {
-      start.push_back(time[row] - 0.5 * duration[row]);
-      end.push_back(0.0);
-      filled = 0;
-    }
-    end.back() = time[row] + 0.5 * duration[row];
-    ++filled;
-    bins.of_row.push_back(static_cast<Index>(start.size()) - 1);
-  }
-  bins.windows.run_begin.push_back(start.size());
-  const auto count = static_cast<Index>(start.size());
-  const Eigen::Map<const VectorXd> starts(start.data(), count), ends(end.data(), count);
-  bins.windows.centre_s = 0.5 * (starts + ends);
-  bins.windows.duration_s = ends - starts;
-  bins.windows.white_floor = VectorXd::Zero(count);
-  return bins;
-}
 
 std::vector<std::string> free_names(const FitResult& fit) {
   std::vector<std::string> names;
@@ -97,14 +61,6 @@ double move(config::ModelFile& model, const std::string& name) {
   return step;
 }
 
-/// Mean of 1/duration over the rows, 1/h.
-double row_hours_inverse(const Table& table, const FitResult& fit) {
-  const std::span<const double> duration = table.column("duration_s");
-  double sum = 0.0;
-  for (std::size_t row : fit.rows) sum += 3600.0 / duration[row];
-  return sum / static_cast<double>(fit.rows.size());
-}
-
 /// Which of the estimates that are not held were determined.
 std::vector<Index> determined(const FitResult& fit) {
   std::vector<Index> out;
@@ -139,7 +95,7 @@ Result<RegionNoise> RegionNoise::make(const Table& table, const FitOptions& opti
   out.held_ = options.as_is;
   out.degrees_ = kInfinite;
   if (fit.coloured) {
-    const Status done = out.coloured(table, fit, partitions, project);
+    const Status done = out.coloured(table, options, fit, partitions);
     if (!done) return done.error();
     return out;
   }
@@ -178,10 +134,11 @@ Result<RegionNoise> RegionNoise::make(const Table& table, const FitOptions& opti
   return out;
 }
 
-Status RegionNoise::coloured(const Table& table, const FitResult& fit,
-                             const std::vector<Partition>& partitions, bool project) {
-  const Bins bins = make_bins(table, fit.rows);
-  const Index n = bins.windows.rows();
+Status RegionNoise::coloured(const Table& table, const FitOptions& options, const FitResult& fit,
+                             const std::vector<Partition>& partitions) {
+  auto shapes = NoiseShapes::make(fit.windows, options.prior);
+  if (!shapes) return shapes.error();
+  const Index n = fit.windows.rows();
   set_counts(partitions);
   MatrixXd weights = MatrixXd::Zero(n, counts_.size());
   Index first = 0;
@@ -189,32 +146,31 @@ Status RegionNoise::coloured(const Table& table, const FitResult& fit,
     for (std::size_t i = 0; i < partition.index.size(); ++i) {
       if (partition.index[i] < 0) continue;
       const Index g = first + partition.index[i];
-      weights(bins.of_row[i], g) += 1.0 / counts_[g];
+      weights(fit.window_of[i], g) += 1.0 / counts_[g];
     }
     first += static_cast<Index>(partition.ranges.size());
   }
-  const std::vector<Index> columns = project ? determined(fit) : std::vector<Index>{};
+  const std::vector<Index> columns = held_ ? std::vector<Index>{} : determined(fit);
   MatrixXd x = MatrixXd::Zero(n, static_cast<Index>(columns.size()));
   VectorXd members = VectorXd::Zero(n);
-  for (Index bin : bins.of_row) members[bin] += 1.0;
+  for (Index window : fit.window_of) members[window] += 1.0;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto values = tangent(table, fit, columns[k]);
     if (!values) return values.error();
-    for (std::size_t i = 0; i < bins.of_row.size(); ++i) {
-      x(bins.of_row[i], static_cast<Index>(k)) +=
-          (*values)[static_cast<Index>(i)] / members[bins.of_row[i]];
+    for (std::size_t i = 0; i < fit.window_of.size(); ++i) {
+      const Index window = fit.window_of[i];
+      x(window, static_cast<Index>(k)) += (*values)[static_cast<Index>(i)] / members[window];
     }
   }
   covariance_ = MatrixXd::Zero(counts_.size(), counts_.size());
   double total = 0.0;
   for (const auto& [noise, weight] : fit.noise.plausible) {
     if (weight < kLeastWeight) continue;
-    const auto whitener = make_whitener(bins.windows, noise);
-    if (!whitener) return whitener.error();
-    const MatrixXd spread = (*whitener)->colour_transposed(weights);
+    const auto whitener = shapes->whitener(noise);
+    const MatrixXd spread = whitener->colour_transposed(weights);
     covariance_ += weight * spread.transpose() * spread;
     if (x.cols() > 0) {
-      const Eigen::ColPivHouseholderQR<MatrixXd> qr((*whitener)->whiten(x));
+      const Eigen::ColPivHouseholderQR<MatrixXd> qr(whitener->whiten(x));
       const MatrixXd q = qr.householderQ() * MatrixXd::Identity(n, qr.rank());
       const MatrixXd fitted = q.transpose() * spread;
       covariance_ -= weight * fitted.transpose() * fitted;
@@ -223,29 +179,24 @@ Status RegionNoise::coloured(const Table& table, const FitResult& fit,
   }
   if (total == 0.0) return Error{ErrorCode::kBadInput, "the fit has no plausible noise model"};
   covariance_ /= total;
-  // Slow noise has no size of its own: what it leaves depends on what is fitted beside it, and some
-  // of a misfit may have been taken for it.
-  floor_ =
-      fit.noise.noise.angle_random_walk_deg_per_sqrt_h * std::sqrt(row_hours_inverse(table, fit));
+  floor_ = noise_floor(*shapes, fit.noise, x, n, kFloorSeed);
+  const double white = fit.noise.noise.angle_random_walk_deg_per_sqrt_h;
+  const double more = white * white * fit.white_beside_windows;
+  for (double* rms : {&floor_.white, &floor_.median, &floor_.low, &floor_.high}) {
+    *rms = std::sqrt(*rms * *rms + more);
+  }
   says_ = fit.noise.says;
   known_ = true;
   // A held model's miss must not be weighed against noise that may explain it anew.
-  if (n > kMostScored || !project) return {};
-  Windows anchored = bins.windows;
-  if (fit.noise.anchored && table.has("rate_std_error_deg_per_h")) {
-    // Below a thousand windows each is a row of its own.
-    const std::span<const double> error = table.column("rate_std_error_deg_per_h");
-    for (std::size_t i = 0; i < fit.rows.size(); ++i) {
-      anchored.white_floor[static_cast<Index>(i)] = error[fit.rows[i]];
-    }
-  }
-  auto shapes = NoiseShapes::make(anchored);
-  if (!shapes) return shapes.error();
+  if (n > kMostScored || held_) return {};
   shapes_ = std::move(*shapes);
   fitted_columns_ = std::move(x);
   indicators_ = weights * counts_.asDiagonal();
-  window_residual_ = fit.residual;
-  estimate_ = fit.noise;
+  window_residual_ = VectorXd::Zero(n);
+  for (std::size_t i = 0; i < fit.window_of.size(); ++i) {
+    window_residual_[fit.window_of[i]] +=
+        fit.residual[static_cast<Index>(i)] / members[fit.window_of[i]];
+  }
   return {};
 }
 
@@ -273,7 +224,8 @@ Status RegionNoise::independent(const Table& table, const FitResult& fit,
   const VectorXd inverse = counts_.cwiseMax(1.0).cwiseInverse();
   covariance_ = inverse.asDiagonal() * MatrixXd(covariance_.selfadjointView<Eigen::Lower>()) *
                 inverse.asDiagonal();
-  floor_ = std::sqrt(deviation.squaredNorm() / static_cast<double>(deviation.size()));
+  const double rms = std::sqrt(deviation.squaredNorm() / static_cast<double>(deviation.size()));
+  floor_ = {rms, rms, rms, rms};
   known_ = true;
   if (!project) return {};
 
@@ -312,7 +264,7 @@ void RegionNoise::set_counts(const std::vector<Partition>& partitions) {
 VectorXd RegionNoise::standard_errors() const {
   VectorXd out = covariance_.diagonal().cwiseMax(0.0).cwiseSqrt();
   // What the fit leaves no freedom is zero but for rounding.
-  const double least = 1e-6 * floor_;
+  const double least = 1e-6 * floor_.white;
   for (Index g = 0; g < out.size(); ++g) {
     if (out[g] * std::sqrt(std::max(counts_[g], 1.0)) < least) out[g] = 0.0;
   }
@@ -321,7 +273,7 @@ VectorXd RegionNoise::standard_errors() const {
 
 RegionScores RegionNoise::scores(const VectorXd& mean_residual, std::uint64_t seed) const {
   if (shapes_ && indicators_.cols() > 0) {
-    return score_regions(*shapes_, fitted_columns_, window_residual_, indicators_, estimate_, seed);
+    return score_regions(*shapes_, fitted_columns_, window_residual_, indicators_, seed);
   }
   const VectorXd error = standard_errors();
   RegionScores out{.offset = {}, .z = VectorXd::Zero(error.size()), .family_wise = {}};

@@ -12,6 +12,7 @@
 #include "config/result.hpp"
 #include "model/fit.hpp"
 #include "model/partition.hpp"
+#include "model/plausible_noise.hpp"
 #include "model/region_score.hpp"
 
 namespace fogbench::model {
@@ -26,9 +27,8 @@ class RegionNoise {
                                   const FitResult& fit, const std::vector<Partition>& partitions);
 
   bool known() const { return known_; }
-  /// RMS residual that noise alone leaves: its white part where it is coloured; where its size
-  /// comes from the residual, that size.
-  double floor() const { return floor_; }
+  /// RMS residual that noise alone leaves; where its size comes from the residual, that size.
+  const NoiseFloor& floor() const { return floor_; }
   bool size_from_residual() const { return degrees_ < std::numeric_limits<double>::infinity(); }
   const std::string& says() const { return says_; }
   /// Of each region's mean residual; 0 where the fit leaves it no freedom.
@@ -40,8 +40,8 @@ class RegionNoise {
 
  private:
   RegionNoise() = default;
-  Status coloured(const Table& table, const FitResult& fit,
-                  const std::vector<Partition>& partitions, bool project);
+  Status coloured(const Table& table, const FitOptions& options, const FitResult& fit,
+                  const std::vector<Partition>& partitions);
   Status independent(const Table& table, const FitResult& fit,
                      const std::vector<Partition>& partitions, const Eigen::VectorXd& deviation,
                      bool project);
@@ -49,7 +49,7 @@ class RegionNoise {
   Eigen::VectorXd family_wise(const Eigen::VectorXd& z, std::uint64_t seed) const;
 
   bool known_ = false;
-  double floor_ = 0.0;
+  NoiseFloor floor_;
   /// Degrees of freedom that the noise's size was estimated from; infinite when it was stated.
   double degrees_ = 0.0;
   bool held_ = false;  ///< nothing was fitted away
@@ -60,7 +60,6 @@ class RegionNoise {
   std::optional<NoiseShapes> shapes_;
   Eigen::MatrixXd fitted_columns_, indicators_;
   Eigen::VectorXd window_residual_;
-  NoiseEstimate estimate_;
 };
 
 /// A fitted model's regressors and the derivatives by its inner parameters, on the fitted rows, one

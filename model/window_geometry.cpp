@@ -42,7 +42,8 @@ double decay_double_mean(double x) {
 
 Status check_windows(const Windows& w) {
   const Eigen::Index n = w.rows();
-  if (w.duration_s.size() != n || w.run_begin.size() < 2 || w.run_begin.front() != 0 ||
+  if (w.duration_s.size() != n || (w.white_scale.size() != 0 && w.white_scale.size() != n) ||
+      w.run_begin.size() < 2 || w.run_begin.front() != 0 ||
       w.run_begin.back() != static_cast<std::size_t>(n)) {
     return config::bad_input(
         "windows: as many durations as rows and the runs' first rows were expected");
@@ -111,6 +112,8 @@ Result<std::shared_ptr<const WindowGeometry>> WindowGeometry::make(const Windows
   g->start_h.resize(n);
   g->step_h.resize(n);
   g->duration_h = w.duration_s.array() / config::kSecondsPerHour;
+  g->white_per_n2 = g->duration_h.inverse();
+  if (w.white_scale.size() > 0) g->white_per_n2 *= w.white_scale.array();
   const Eigen::Map<const Eigen::ArrayXd> tau(g->ladder.tau_s.data(), terms);
   for (std::size_t run = 0; run + 1 < w.run_begin.size(); ++run) {
     const auto first = static_cast<Eigen::Index>(w.run_begin[run]);

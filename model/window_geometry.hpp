@@ -41,8 +41,9 @@ struct WindowGeometry {
   Eigen::ArrayXd mean_spread;  ///< sum over the ladder of psi - phi^2
   Eigen::ArrayXd mean_total;   ///< sum over the ladder of psi
   Eigen::ArrayXd duration_h;
-  Eigen::ArrayXd start_h;  ///< of the window, since the run's start
-  Eigen::ArrayXd step_h;   ///< from the window's start to the next window's start
+  Eigen::ArrayXd white_per_n2;  ///< white variance of the window for N = 1 deg/sqrt(h)
+  Eigen::ArrayXd start_h;       ///< of the window, since the run's start
+  Eigen::ArrayXd step_h;        ///< from the window's start to the next window's start
 
   Eigen::Index rows() const { return duration_h.size(); }
 

@@ -62,6 +62,10 @@ class Detector {
   /// structure off as noise.
   Eigen::MatrixXd lambdas_at_null_noise(const Draws& draws) const;
   Eigen::VectorXd observed_at_null_noise() const;
+  /// Portmanteau statistic of each draw's innovations, the noise weighed anew in each: large where
+  /// no noise of the family leaves them white.
+  Eigen::VectorXd whiteness(const Draws& draws) const;
+  double observed_whiteness() const;
 
  private:
   struct View;  // one noise shape

@@ -4,12 +4,14 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <optional>
 
+#include "model/bad_rows.hpp"
 #include "model/design.hpp"
 #include "model/diagnose/adequacy.hpp"
+#include "model/diagnose/base_columns.hpp"
+#include "model/diagnose/first_look.hpp"
 #include "model/diagnose/formula_search.hpp"
 #include "model/diagnose/heldout.hpp"
 #include "model/diagnose/next_measurement.hpp"
@@ -24,51 +26,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// How the false-alarm rate is shared out: to the first effect, to shapes from outside, and to the
-// smooth functions of every variable.
-constexpr double kShareOfEffects = 0.8, kShareOfShapes = 0.1, kShareOfSmooth = 0.1;
-
-/// The model's terms without the numbers of an earlier fit: what is not held is fitted anew.
-config::ModelFile unfitted(config::ModelFile model) {
-  for (config::ModelTerm& term : model.terms) {
-    if (term.fixed) continue;
-    term.coefficient.reset();
-    term.coefficients.clear();
-    term.standard_errors.clear();
-  }
-  model.fit.reset();
-  return model;
-}
-
-/// The model's columns on the coarse rows, and the observable less the terms that are held.
-struct Base {
-  MatrixXd columns;
-  VectorXd y;
-};
-
-Result<Base> base_of(const WorkingTable& table, const Signals& signals,
-                     const config::ModelFile& fitted) {
-  const auto design = Design::make(signals, unfitted(fitted), false);
-  if (!design) return design.error();
-  VectorXd inner(static_cast<Index>(design->parameters().size()));
-  for (Index i = 0; i < inner.size(); ++i) {
-    inner[i] = design->parameters()[static_cast<std::size_t>(i)].start.value_or(1.0);
-  }
-  MatrixXd all;
-  design->visit(inner, true, signals.signal(fitted.observable),
-                [&](std::size_t begin, Eigen::Ref<MatrixXd> rows) {
-                  if (all.size() == 0) {
-                    all.resize(static_cast<Index>(signals.rows()), rows.cols());
-                  }
-                  all.middleRows(static_cast<Index>(begin), rows.rows()) = rows;
-                });
-  if (!all.allFinite()) {
-    all = all.array().isFinite().select(all, 0.0).eval();
-  }
-  all = table.average(all);
-  return Base{full_rank(all.leftCols(all.cols() - 1)), all.rightCols(1)};
-}
 
 std::string name_of_parameter(const Candidate& candidate) {
   return candidate.parameter_name.empty() ? std::string(candidate.parameter->name)
@@ -92,34 +49,35 @@ config::ModelFile extended_by(config::ModelFile model, const Library& library,
   return model;
 }
 
-/// RMS residual that the noise alone leaves when the columns have been fitted.
-double noise_rms(const Windows& windows, const NoiseCoefficients& noise, const MatrixXd& columns,
-                 Index bench_rows, std::uint64_t seed) {
-  const auto whitener = make_whitener(windows, noise);
-  if (!whitener) return std::nan("");
-  constexpr Index kDraws = 200;
-  boost::random::mt19937_64 engine(seed);
-  boost::random::normal_distribution<double> normal;
-  const MatrixXd units =
-      MatrixXd::NullaryExpr(windows.rows(), kDraws, [&](Index, Index) { return normal(engine); });
-  MatrixXd left = (*whitener)->colour(units);
-  if (columns.cols() > 0) {
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr((*whitener)->whiten(columns));
-    left -= columns * qr.solve((*whitener)->whiten(left));
-  }
-  return std::sqrt(left.topRows(bench_rows).squaredNorm() /
-                   static_cast<double>(bench_rows * kDraws));
+Table without_readings(Table table, const std::string& observable,
+                       const std::vector<LeftOut>& rows) {
+  const auto given = table.column(observable);
+  std::vector<double> values(given.begin(), given.end());
+  for (const LeftOut& row : rows) values[row.row] = kMissing;
+  table.set_column(observable, std::move(values));
+  return table;
 }
 
 /// The work of one diagnosis, part by part.
 class Work {
  public:
   Work(const config::ModelFile& model, const DiagnoseOptions& options)
-      : options_(options), model_(unfitted(model)) {}
+      : options_(options), model_(unfitted(model)) {
+    if (options.quiet != nullptr) know_from(*options.quiet);
+    d_.noise_source = prior_.source;
+  }
 
   Result<Diagnosis> run(const Table& input) {
     tell("reading the table", 0.0);
-    auto table = WorkingTable::make(input, model_, options_.quiet);
+    // A bad reading is not built on. Its other columns stay: histories run through the row.
+    std::optional<Table> cleared;
+    if (input.rows() <= static_cast<std::size_t>(kMostRowsToDoubt)) {
+      if (auto first = fit(input, model_, fit_options(true)); first && !first->left_out.empty()) {
+        d_.left_out = std::move(first->left_out);
+        cleared = without_readings(input, model_.observable, d_.left_out);
+      }
+    }
+    auto table = WorkingTable::make(cleared ? *cleared : input, model_, options_.quiet);
     if (!table) return table.error();
     table_ = std::move(*table);
     d_.table = table_.bench();
@@ -128,7 +86,8 @@ class Work {
     d_.false_alarm_rate = options_.false_alarm_rate;
 
     tell("fitting the model and looking where it fails", 0.05);
-    auto before = compare(table_.bench_with_history(), model_, {}, options_.seed);
+    auto before = compare(table_.bench_with_history(), model_, fit_options(), options_.seed,
+                          LookForEffects::kNo);
     if (!before) return before.error();
     d_.before = std::move(*before);
 
@@ -136,9 +95,9 @@ class Work {
     if (has_calendar_time(signals)) d_.notes.emplace_back(kCalendarNote);
     config::ModelFile searched = d_.before.fit.fitted;
     if (table_.has_quiet_record()) searched.terms.push_back(quiet_bias());
-    const auto base = base_of(table_, signals, searched);
+    const auto base = base_columns(table_, signals, searched);
     if (!base) return base.error();
-    const auto shapes = NoiseShapes::make(table_.windows());
+    const auto shapes = NoiseShapes::make(table_.windows(), search_prior());
     if (!shapes) return shapes.error();
 
     tell("evaluating the candidates", 0.2);
@@ -171,14 +130,16 @@ class Work {
     if (const auto noise = gls(*shapes, last, base->y);
         noise && (d_.judged || d_.missing.empty())) {
       const NoiseCoefficients& left = noise->noise.noise;
-      d_.noise_floor = noise_rms(table_.windows(), left, last, table_.bench_rows(), options_.seed);
+      d_.floor = noise_floor(*shapes, noise->noise, last, table_.bench_rows(), options_.seed);
+      d_.noise_floor = d_.floor.beside(d_.after.rms);
       if (d_.table.has("time_s")) d_.noise = left;
     }
-    const Adequacy adequacy =
-        check_adequacy(*shapes, last, base->y, make_smooth_library(source), options_.seed + 77);
+    const Library smooth = make_smooth_library(source);
+    const Adequacy adequacy = check_adequacy(*shapes, last, base->y, smooth, options_.seed);
     conclude(found, adequacy);
     if (d_.verdict == Verdict::kUnexplained) suggest(source, base->columns, last, base->y);
-    d_.sentences = verdict_in_words(d_);
+    doubt_walk(input_of_search, smooth);
+    say();
     std::erase_if(d_.notes, [&](const std::string& note) {
       const auto& said = d_.after.warnings;
       return std::find(said.begin(), said.end(), note) != said.end();
@@ -191,6 +152,25 @@ class Work {
  private:
   void tell(const std::string& part, double share) const {
     if (options_.progress) options_.progress(part, share);
+  }
+
+  /// Fits of the bench's rows alone know the static record by what it says of the noise. Bad rows
+  /// have been cleared before.
+  FitOptions fit_options(bool doubt_rows = false) const {
+    return {.weight_by = {}, .prior = prior_, .doubt_rows = doubt_rows};
+  }
+  /// The search has the record itself among its rows.
+  NoisePrior search_prior() const {
+    return prior_.source == NoisePrior::Source::kStaticRecord ? NoisePrior{} : prior_;
+  }
+  void know_from(const Table& quiet) {
+    config::ModelFile still;
+    still.observable = model_.observable;
+    still.terms.emplace_back().effect = "bias";
+    const auto fitted = fit(quiet, still, {.noise = FitOptions::Noise::kColoured, .weight_by = {}});
+    if (fitted && prior_.source != NoisePrior::Source::kGiven) {
+      prior_ = NoisePrior::recorded(fitted->noise);
+    }
   }
 
   double heldout(const FitResult& fit) const {
@@ -207,7 +187,8 @@ class Work {
       so_far.push_back(f);
       MissingEffect missing{.found = f, .estimates = {}};
       const Candidate& candidate = library.candidates[f.candidate];
-      const auto refit = fit(table_.bench_with_history(), extended_by(model_, library, so_far), {});
+      const auto refit =
+          fit(table_.bench_with_history(), extended_by(model_, library, so_far), fit_options());
       fits_.push_back(d_.after);
       if (refit) {
         d_.after = *refit;
@@ -308,7 +289,7 @@ class Work {
     term.expression = fmt::format("(run_index >= 1) * ({})", sum);
     term.unit = "relative";
     wider.terms.push_back(std::move(term));
-    const auto refit = fit(table_.bench_with_history(), wider, {});
+    const auto refit = fit(table_.bench_with_history(), wider, fit_options());
     if (!refit) return;
     d_.after = *refit;
     MissingEffect missing{.found = {.effect = id}, .terms = {id}, .estimates = {}};
@@ -355,8 +336,67 @@ class Work {
     } else if (!d_.missing.empty()) {
       d_.verdict = Verdict::kMissingEffect;
     }
+  }
+
+  /// A random walk far beyond what instruments show is not noise, but no effect either: where it
+  /// would explain everything, the slow effects and the walk are one set, and a static record
+  /// decides.
+  void doubt_walk(const SearchInput& input, const Library& smooth) {
+    const auto noise = gls(input.shapes, input.base, input.y);
+    if (!noise || !d_.judged || prior_.walk_is_noise(noise->noise) > options_.false_alarm_rate) {
+      return;
+    }
+    NoisePrior wide = search_prior();
+    wide.k_over_n = {wide.k_over_n.finding(), 1.0};
+    const auto shapes = NoiseShapes::make(input.windows, wide);
+    if (!shapes) return;
+    if (d_.verdict != Verdict::kNothingMissing) {
+      const SearchInput beyond{input.tried,      *shapes,    input.windows,
+                               input.bench_rows, input.base, input.y};
+      const FirstLook look = look_at(beyond, smooth, options_.seed);
+      const double left =
+          std::min(look.p_effects / kShareOfEffects,
+                   std::min(look.p_shapes / kShareOfShapes, look.p_smooth / kShareOfSmooth));
+      if (!look.looked || left <= options_.false_alarm_rate) return;
+    }
+    const auto walk = gls(*shapes, input.base, input.y);
+    if (!walk) return;
+    const NoiseCoefficients& its = walk->noise.noise;
+    d_.walk_beyond = its.rate_random_walk_deg_per_h_per_sqrt_h /
+                     (its.angle_random_walk_deg_per_sqrt_h * prior_.k_over_n.usual_most());
+    d_.p_adequate = std::min(d_.p_adequate, prior_.walk_is_noise(noise->noise));
+    call_it_slow(input.tried);
+  }
+
+  /// The set of the slow effects, those that were found or else all, and the random walk.
+  void call_it_slow(const Library& library) {
+    d_.verdict = Verdict::kAmbiguous;
+    d_.unexplained.depends_on.clear();
+    d_.unexplained.suggestion.clear();
+    std::erase_if(d_.missing, [&](const MissingEffect& m) {
+      return !library.candidates[m.found.candidate].slow;
+    });
+    std::vector<std::string> set;
+    for (const MissingEffect& m : d_.missing) set.push_back(m.found.effect);
+    for (const Candidate& c : library.candidates) {
+      if (d_.missing.empty() && c.slow && !c.shadow()) set.push_back(c.name);
+    }
+    set.emplace_back("random_walk");
+    if (d_.missing.size() > 1) d_.missing.resize(1);
+    for (MissingEffect& m : d_.missing) {
+      m.found.probability = 1.0 / static_cast<double>(set.size());
+      m.found.rivals.clear();
+      for (std::size_t i = 1; i < set.size(); ++i) {
+        m.found.rivals.push_back({set[i], m.found.probability});
+      }
+    }
+    d_.ambiguous = {std::move(set)};
+  }
+
+  void say() {
     d_.next_measurements = next_measurements(
         {d_.table, d_.after.fitted, noise_to_plan_with(), d_.ambiguous, d_.not_testable});
+    d_.sentences = verdict_in_words(d_);
   }
 
   /// A formula beside the model as it came, or beside what was found where that is clearly better.
@@ -378,6 +418,7 @@ class Work {
 
   const DiagnoseOptions& options_;
   const config::ModelFile model_;
+  NoisePrior prior_ = options_.prior;
   WorkingTable table_;
   std::vector<FitResult> fits_;  ///< before each addition
   bool within_steps_ = false;    ///< what is left is no more than the thermometer's steps may hide

@@ -64,12 +64,19 @@ struct Diagnosis {
   double false_alarm_rate = 0.05;
   Table table;  ///< what was analysed: complete rows, binned where there were many
   std::size_t rows_per_bin = 1;
-  Comparison before;         ///< the model as it came, on `table`: fit and failing regions
-  FitResult after;           ///< with the missing effects, on `table`; as before.fit if none
-  double heldout_rms = 0.0;  ///< of the model as it came
-  double noise_floor = std::numeric_limits<double>::quiet_NaN();  ///< RMS residual that noise alone
-                                                                  ///< leaves with the last fit
-  NoiseCoefficients noise;                                        ///< estimated with the last fit
+  std::vector<LeftOut> left_out;  ///< single bad readings of the table that was given
+  Comparison before;              ///< the model as it came, on `table`: fit and failing regions
+  FitResult after;                ///< with the missing effects, on `table`; as before.fit if none
+  double heldout_rms = 0.0;       ///< of the model as it came
+  /// RMS residual that noise alone leaves beside the last fit, the same on every step of the
+  /// ladder; NaN: unknown.
+  double noise_floor = std::numeric_limits<double>::quiet_NaN();
+  NoiseFloor floor;         ///< its parts
+  NoiseCoefficients noise;  ///< estimated with the last fit
+  /// K over what such instruments show at most, where a random walk of that size would explain
+  /// everything that was found; 0: none would.
+  double walk_beyond = 0.0;
+  NoisePrior::Source noise_source = NoisePrior::Source::kInstruments;
   std::vector<MissingEffect> missing;
   std::vector<std::vector<std::string>> ambiguous;
   Unexplained unexplained;
@@ -88,6 +95,7 @@ struct Diagnosis {
 struct DiagnoseOptions {
   double false_alarm_rate = 0.05;
   const Table* quiet = nullptr;  ///< a static record of the same gyro: informs the noise only
+  NoisePrior prior = {};         ///< of the gyro's noise
   /// Terms of the user that take part as candidates beside the catalogue (expressions, or
   /// catalogue effects with starting values).
   std::vector<config::ModelTerm> candidates;

@@ -67,6 +67,7 @@ Windows windows_at(const Windows& all, const std::vector<Index>& rows) {
   out.centre_s = all.centre_s(rows);
   out.duration_s = all.duration_s(rows);
   out.white_floor = all.white_floor(rows);
+  if (all.white_scale.size() > 0) out.white_scale = all.white_scale(rows);
   std::size_t run = all.run_begin.size();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::size_t its = 0;

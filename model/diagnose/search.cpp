@@ -31,8 +31,6 @@ constexpr double kBeyondWalk = 2e-3;
 constexpr std::size_t kMostFurtherShapes = 3;
 // An added effect stays when dropping it is refuted at this level.
 constexpr double kStays = 0.02;
-// The model needs this many rows beyond its terms, or nothing can be said of noise or structure.
-constexpr Index kFewestFreeRows = 5;
 constexpr int kMostChanges = 8;
 
 MatrixXd joined(const MatrixXd& a, const MatrixXd& b) {

@@ -76,6 +76,9 @@ struct SearchOptions {
   std::uint64_t seed = 20260101;
 };
 
+/// The model needs this many rows beyond its terms, or nothing can be said of noise or structure.
+inline constexpr Eigen::Index kFewestFreeRows = 5;
+
 SearchResult search(const SearchInput& input, const SearchOptions& options);
 
 /// The base and what the found effects add to it, of full rank; `except`: one that is left out.

@@ -137,6 +137,13 @@ std::vector<std::string> verdict_in_words(const Diagnosis& d) {
     out.push_back(fmt::format("Cannot tell apart: {}.", fmt::join(set, ", ")));
   }
   if (d.verdict == Verdict::kUnexplained) out.push_back(formula_sentence(d));
+  if (d.walk_beyond > 0.0) {
+    out.push_back(fmt::format(
+        "A random walk would explain it, but one {:.0f} times what nine of ten such gyros "
+        "stay below: a static record (--noise FILE) decides whether it is noise.",
+        d.walk_beyond));
+  }
+  for (const LeftOut& row : d.left_out) out.push_back(row.says + ".");
   // Then what a comparison says is all that can be said.
   if (!d.judged) {
     out.insert(out.end(), d.before.sentences.begin(), d.before.sentences.end());

@@ -14,6 +14,7 @@
 #include "model/measurement_columns.hpp"
 #include "model/row_order.hpp"
 #include "model/signals.hpp"
+#include "model/stated_errors.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -124,10 +125,11 @@ RowTimes times_of(const TextColumn& runs, std::vector<double> time, std::vector<
   if (!out.usable) {
     out.centre.resize(n);
     std::iota(out.centre.begin(), out.centre.end(), 0.0);
-    out.duration.assign(n, 1.0);
+    out.duration.assign(n, kUntimedWindow_s);
+    for (double& centre : out.centre) centre *= kUntimedWindow_s;
     return out;
   }
-  double usual = 1.0;
+  double usual = kUntimedWindow_s;
   if (!steps.empty()) {
     const auto middle = steps.begin() + std::ssize(steps) / 2;
     std::nth_element(steps.begin(), middle, steps.end());
@@ -273,6 +275,7 @@ Windows windows_of(const Table& table) {
   out.duration_s = vector("window_duration_s");
   out.white_floor = table.has(kStdError) ? vector(kStdError) : Eigen::VectorXd::Zero(n);
   out.white_floor = out.white_floor.array().isFinite().select(out.white_floor, 0.0).eval();
+  out.white_scale = stated_white_scale(out);
   return out;
 }
 

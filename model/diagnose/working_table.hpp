@@ -57,7 +57,7 @@ class WorkingTable {
   Eigen::Index bench_rows() const { return static_cast<Eigen::Index>(bench_.rows()); }
   bool has_quiet_record() const { return rows() > bench_rows(); }
   std::size_t rows_per_bin() const { return rows_per_bin_; }
-  /// Of the coarse rows. Where the table has no usable time, its rows follow each other at 1 s.
+  /// Of the coarse rows. Where the table has no usable time, its rows follow each other at 180 s.
   const Windows& windows() const { return windows_; }
 
   /// Columns on the fine rows, averaged over the coarse ones.

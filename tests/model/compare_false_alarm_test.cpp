@@ -10,6 +10,7 @@
 
 #include "model/compare.hpp"
 #include "tests/model/models.hpp"
+#include "tests/support/diagnosis_trial.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -56,6 +57,31 @@ TEST(CompareFalseAlarms, AreRareUnderTacticalNoise) {
 
 TEST(CompareFalseAlarms, AreRareUnderARandomWalk) {
   EXPECT_LE(alarms_percent({0.001, 0.0, 0.01, 0.0}, true), kMostPercent);
+}
+
+// Effects with a memory, or that act for a while, move the mean of no range.
+TEST(Compare, NeverCallsNoiseWhatADiagnosisNames) {
+  using tests::Design;
+  const std::vector<tests::DiagnosisCase> cases{
+      {.part = "look", .design = Design::kThermalCooling, .hidden = {"temperature_hysteresis"}},
+      {.part = "look", .design = Design::kThermalCooling, .hidden = {"temperature_rate_lagged"}},
+      {.part = "look", .design = Design::kMagnetic, .hidden = {"magnetic_settling_x"}},
+      {.part = "look", .design = Design::kMagnetic, .hidden = {"magnetic_hysteresis_z"}},
+      {.part = "look", .design = Design::kMixed, .hidden = {"warm_up"}}};
+  tests::TrialMaker maker;
+  int named = 0;
+  for (tests::DiagnosisCase what : cases) {
+    what.s = 10.0;
+    for (std::uint64_t number = 0; number < 3; ++number) {
+      const tests::Trial trial = maker.make(what, number);
+      if (tests::answer_of(trial).verdict == Verdict::kNothingMissing) continue;
+      ++named;
+      const auto result = compare(trial.table, trial.model, {});
+      ASSERT_TRUE(result) << result.error().message;
+      EXPECT_LT(result->p_adequate, kAdequate) << what.name() << " #" << number;
+    }
+  }
+  EXPECT_GT(named, 10);
 }
 
 }  // namespace

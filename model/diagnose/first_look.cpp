@@ -1,0 +1,59 @@
+#include "model/diagnose/first_look.hpp"
+
+#include "model/diagnose/adequacy.hpp"
+#include "model/diagnose/base_columns.hpp"
+#include "model/diagnose/stage.hpp"
+
+namespace fogbench::model {
+
+FirstLook look_at(const SearchInput& input, const Library& smooth, std::uint64_t seed) {
+  FirstLook out;
+  if (input.y.size() - input.base.cols() < kFewestFreeRows) return out;
+  const Stage stage(input, input.base, seed);
+  out.looked = true;
+  if (!stage.effects().empty()) {
+    const Eigen::Index leader = stage.leader();
+    out.p_effects = stage.p_value(leader);
+    out.looks_like = stage.candidate(leader).name;
+  }
+  if (!stage.shadows().empty()) {
+    const Eigen::Index best = stage.best(stage.shadows());
+    out.p_shapes = stage.p_value(best);
+    if (out.p_shapes / kShareOfShapes < out.p_effects / kShareOfEffects) {
+      out.looks_like = stage.candidate(best).name;
+    }
+  }
+  const Adequacy adequacy = check_adequacy(input.shapes, input.base, input.y, smooth, seed);
+  out.p_smooth = adequacy.p_value;
+  const double others = std::min(out.p_effects / kShareOfEffects, out.p_shapes / kShareOfShapes);
+  if (out.p_smooth / kShareOfSmooth < others && !adequacy.depends_on.empty()) {
+    out.looks_like = "something that depends on " + adequacy.depends_on.front();
+  }
+  if (const auto noise = gls(input.shapes, input.base, input.y)) {
+    out.p_walk = input.shapes.prior().walk_is_noise(noise->noise);
+    if (out.p_walk < std::min(others, out.p_smooth / kShareOfSmooth)) {
+      out.looks_like = "a slow effect, or a random walk far beyond that of such gyros";
+    }
+  }
+  return out;
+}
+
+Result<FirstLook> first_look(const Table& table, const config::ModelFile& fitted,
+                             const NoisePrior& prior) {
+  const auto working = WorkingTable::make(table, fitted, nullptr);
+  if (!working) return working.error();
+  const Signals signals(working->fine(), fitted.reference_temperature_c);
+  const auto base = base_columns(*working, signals, fitted);
+  if (!base) return base.error();
+  const auto shapes = NoiseShapes::make(working->windows(), prior);
+  if (!shapes) return shapes.error();
+  const std::vector<config::ModelTerm> none;
+  const LibrarySource source{*working, signals, fitted, none};
+  const auto library = make_library(source);
+  if (!library) return library.error();
+  const SearchInput input{*library,      *shapes, working->windows(), working->bench_rows(),
+                          base->columns, base->y};
+  return look_at(input, make_smooth_library(source), SearchOptions{}.seed);
+}
+
+}  // namespace fogbench::model
