@@ -10,13 +10,13 @@
 
 #include "cli/command.hpp"
 #include "cli/load_table.hpp"
+#include "cli/noise_option.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
 #include "config/units.hpp"
-#include "daemon/run_options.hpp"
 #include "model/compare.hpp"
 #include "model/report.hpp"
 #include "model/row_order.hpp"
@@ -29,7 +29,7 @@ struct CompareOptions {
   std::string model;
   std::string weight_by;
   std::string report;
-  model::FitOptions::Noise noise = model::FitOptions::Noise::kAuto;
+  std::string noise;
   bool as_is = false;
   bool check = false;
   bool json = false;
@@ -137,14 +137,24 @@ nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options
                        {"scale_changed", change.scale_changed},
                        {"says", change.says}});
   }
+  nlohmann::json left_out = nlohmann::json::array();
+  for (const model::LeftOut& row : c.fit.left_out) {
+    left_out.push_back({{"row", row.row + 1},
+                        {"off_deg_per_h", row.off},
+                        {"sigmas", row.sigmas},
+                        {"says", row.says}});
+  }
   const config::NoiseCoefficients& noise = c.fit.noise.noise;
   return {{"adequate", c.p_adequate >= model::kAdequate},
           {"p_adequate", c.p_adequate},
+          {"looks_like", c.looks_like},
           {"noise_known", c.noise_known},
           {"as_is", c.as_is},
           {"fit",
            {{"rms_deg_per_h", c.fit.rms},
             {"noise_floor_deg_per_h", c.noise_floor},
+            {"white_floor_deg_per_h", c.floor.white},
+            {"noise_floor_5_95_deg_per_h", {c.floor.low, c.floor.high}},
             {"rows", c.fit.rows.size()}}},
           {"noise",
            {{"coloured", c.fit.coloured},
@@ -155,6 +165,7 @@ nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options
           {"estimates", estimates},
           {"regions", regions},
           {"changes", changes},
+          {"left_out", left_out},
           {"warnings", c.fit.warnings},
           {"sentences", c.sentences},
           {"next", next_step(c, options)}};
@@ -175,9 +186,13 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
   auto table = load_table(options.data);
   if (!table) return table.error();
   for (const std::string& note : model::mend_stamps(*table, model->observable)) print_note(note);
-  const auto result = model::compare(
-      *table, *model,
-      {.noise = options.noise, .weight_by = options.weight_by, .as_is = options.as_is});
+  const auto noise = chosen_noise(options.noise, options.data);
+  if (!noise) return noise.error();
+  const auto result = model::compare(*table, *model,
+                                     {.noise = noise->kind,
+                                      .weight_by = options.weight_by,
+                                      .as_is = options.as_is,
+                                      .prior = noise->prior});
   if (!result) return result.error();
   if (page) {
     Status written =
@@ -197,7 +212,6 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  using Noise = model::FitOptions::Noise;
   add_command<CompareOptions>(
       app, action, "compare", "See where a model and its measurements differ",
       "  fogbench compare config/data/paper-thermal.csv --model paper-thermal "
@@ -210,12 +224,7 @@ void add_compare(CLI::App& app, Action& action) {
         command.add_flag("--as-is", options.as_is,
                          "Hold the coefficients as given instead of fitting them");
         command.add_option("--weight-by", options.weight_by, "Column of standard deviations");
-        daemon::add_choice_option<Noise>(
-            command, "--noise", options.noise,
-            {{"auto", Noise::kAuto},
-             {"independent", Noise::kIndependent},
-             {"coloured", Noise::kColoured}},
-            "Noise of the measurements (default: auto; coloured needs time_s and duration_s)");
+        add_noise_option(command, options.noise);
         command.add_option("--report", options.report, "Write one self-contained HTML page");
         command.add_flag("--check", options.check, "Exit with 1 when the model is inadequate");
         command.add_flag("--json", options.json, "One JSON document");

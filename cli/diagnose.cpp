@@ -15,6 +15,7 @@
 #include "cli/diagnosis_text.hpp"
 #include "cli/fit_record.hpp"
 #include "cli/load_table.hpp"
+#include "cli/noise_option.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
@@ -33,7 +34,7 @@ using nlohmann::ordered_json;
 struct DiagnoseOptions {
   DataOptions data;
   std::string model;
-  std::string quiet;
+  std::string quiet, noise;
   std::string report;
   std::string output;
   std::vector<std::string> candidates;
@@ -135,6 +136,12 @@ Status read_given(const DiagnoseOptions& options, Given& given) {
   auto how = options_of(options);
   if (!how) return how.error();
   given.how = std::move(*how);
+  auto noise = chosen_noise(options.noise, options.data);
+  if (!noise) return noise.error();
+  given.how.prior = noise->prior;
+  // A static record, by whichever name it is given, takes part in every estimate of the noise.
+  given.quiet = std::move(noise->record);
+  if (given.quiet) given.how.quiet = &*given.quiet;
   if (options.quiet.empty()) return {};
   DataOptions record = options.data;
   record.data = {options.quiet};
@@ -272,6 +279,7 @@ void add_diagnose(CLI::App& app, Action& action) {
             ->required();
         command.add_option("--quiet", options.quiet,
                            "A static record of the same gyro: tells slow effects from noise");
+        add_noise_option(command, options.noise);
         command.add_option("--candidate", options.candidates,
                            "Model file whose terms take part as candidates, beside the catalogue");
         command.add_option("--report", options.report, "Write one self-contained HTML page");

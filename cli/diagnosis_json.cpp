@@ -34,12 +34,31 @@ ordered_json missing_json(const model::MissingEffect& m) {
           {"rivals", rivals}};
 }
 
+std::string_view noise_source(const model::Diagnosis& d) {
+  switch (d.noise_source) {
+    case model::NoisePrior::Source::kInstruments:
+      return "prior";
+    case model::NoisePrior::Source::kGiven:
+      return "given";
+    case model::NoisePrior::Source::kStaticRecord:
+      return "quiet record";
+  }
+  return "";
+}
+
 }  // namespace
 
 ordered_json diagnosis_json(const model::Diagnosis& d, const std::string& next_step) {
   ordered_json failures = ordered_json::array(), missing = ordered_json::array(),
                not_testable = ordered_json::array(), bounds = ordered_json::array(),
-               next = ordered_json::array(), ladder = ordered_json::array();
+               next = ordered_json::array(), ladder = ordered_json::array(),
+               left_out = ordered_json::array();
+  for (const model::LeftOut& row : d.left_out) {
+    left_out.push_back({{"row", row.row + 1},
+                        {"off_deg_per_h", row.off},
+                        {"sigmas", row.sigmas},
+                        {"says", row.says}});
+  }
   for (const model::Region& r : d.before.regions) {
     if (!d.before.noise_known || r.p_family_wise > d.false_alarm_rate) continue;
     failures.push_back({{"where", r.where},
@@ -47,6 +66,7 @@ ordered_json diagnosis_json(const model::Diagnosis& d, const std::string& next_s
                         {"range", {r.from, r.to}},
                         {"residual_deg_per_h", r.offset},
                         {"z", r.z},
+                        {"p_value", r.p_family_wise},
                         {"says", r.says}});
   }
   for (const model::MissingEffect& m : d.missing) missing.push_back(missing_json(m));
@@ -88,12 +108,16 @@ ordered_json diagnosis_json(const model::Diagnosis& d, const std::string& next_s
       {"fit",
        {{"rms_deg_per_h", d.before.fit.rms},
         {"heldout_rms_deg_per_h", d.heldout_rms},
-        {"noise_floor_deg_per_h", d.noise_floor}}},
+        {"noise_floor_deg_per_h", d.noise_floor},
+        {"white_floor_deg_per_h", d.floor.white},
+        {"noise_floor_5_95_deg_per_h", {d.floor.low, d.floor.high}}}},
       {"noise",
        {{"N_deg_per_sqrt_h", noise(d.noise.angle_random_walk_deg_per_sqrt_h)},
         {"B_deg_per_h", noise(d.noise.bias_instability_deg_per_h)},
         {"K_deg_per_h_per_sqrt_h", noise(d.noise.rate_random_walk_deg_per_h_per_sqrt_h)}}},
+      {"noise_source", noise_source(d)},
       {"failures", failures},
+      {"left_out", left_out},
       {"missing", missing},
       {"ambiguous", d.ambiguous},
       {"unexplained",

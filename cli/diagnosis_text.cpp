@@ -87,7 +87,11 @@ void print_diagnosis(const model::Diagnosis& d, std::string_view unit) {
     ladder.add_row({step.added.empty() ? "as it came" : "+ " + step.added, number(step.rms),
                     number(step.heldout_rms), number(d.noise_floor)});
   }
-  fmt::print("{}\n", ladder.text());
+  fmt::print("{}", ladder.text());
+  if (std::isfinite(d.floor.white)) {
+    fmt::print("The noise floor: {}.\n", d.floor.parts_in_words(unit));
+  }
+  fmt::print("\n");
   print_bounds(d.bounds);
   print_not_testable(d.not_testable);
   if (!d.next_measurements.empty()) fmt::print("\nWhat to measure next:\n");

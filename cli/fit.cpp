@@ -9,12 +9,12 @@
 #include "cli/command.hpp"
 #include "cli/fit_record.hpp"
 #include "cli/load_table.hpp"
+#include "cli/noise_option.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
-#include "daemon/run_options.hpp"
 #include "model/fit.hpp"
 #include "model/row_order.hpp"
 
@@ -29,7 +29,7 @@ struct FitCommandOptions {
   std::string model;
   std::string output;
   std::string weight_by;
-  model::FitOptions::Noise noise = model::FitOptions::Noise::kAuto;
+  std::string noise;
   bool json = false;
 };
 
@@ -122,8 +122,11 @@ Result<ExitStatus> run_fit(const FitCommandOptions& options) {
   Result<model::Table> table = load_table(options.data);
   if (!table) return table.error();
   for (const std::string& note : model::mend_stamps(*table, model->observable)) print_note(note);
+  const auto noise = chosen_noise(options.noise, options.data);
+  if (!noise) return noise.error();
   Result<model::FitResult> result =
-      model::fit(*table, *model, {.noise = options.noise, .weight_by = options.weight_by});
+      model::fit(*table, *model,
+                 {.noise = noise->kind, .weight_by = options.weight_by, .prior = noise->prior});
   if (!result) return result.error();
   if (Status signed_ok = sign(*result->fitted.fit, options.data); !signed_ok) {
     return signed_ok.error();
@@ -143,7 +146,6 @@ Result<ExitStatus> run_fit(const FitCommandOptions& options) {
 }  // namespace
 
 void add_fit(CLI::App& app, Action& action) {
-  using Noise = model::FitOptions::Noise;
   add_command<FitCommandOptions>(
       app, action, "fit", "Fit an error model to measurements",
       "  fogbench fit 7 --model magnetic -o fitted.json\n"
@@ -155,12 +157,7 @@ void add_fit(CLI::App& app, Action& action) {
         command.add_option("-o,--output", options.output, "Where to write the fitted model")
             ->required();
         command.add_option("--weight-by", options.weight_by, "Column of standard deviations");
-        daemon::add_choice_option<Noise>(
-            command, "--noise", options.noise,
-            {{"auto", Noise::kAuto},
-             {"independent", Noise::kIndependent},
-             {"coloured", Noise::kColoured}},
-            "Noise of the measurements (default: auto; coloured needs time_s and duration_s)");
+        add_noise_option(command, options.noise);
         command.add_flag("--json", options.json, "One JSON document");
       },
       run_fit);
