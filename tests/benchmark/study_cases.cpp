@@ -80,6 +80,9 @@ void add_nulls(std::vector<DiagnosisCase>& out) {
   for (const Design design : {Design::kMagnetic, Design::kThermalCooling, Design::kMixed}) {
     add(out, {.part = "nulls", .design = design}, noises, {0.0});
   }
+  for (const Design design : {Design::kMagnetic, Design::kMixed}) {
+    add(out, {.part = "nulls", .design = design}, noises_that_differ_by_row(), {0.0});
+  }
   for (const Design design : {Design::kDiagonals, Design::kOneAxis, Design::kPlateaus,
                               Design::kThermal, Design::kTurntable, Design::kTwoRuns}) {
     add(out, {.part = "nulls", .design = design}, {"navigation", "walk"}, {0.0});

@@ -37,6 +37,10 @@ const std::map<std::string, ForeignNoise>& known() {
       {"markov", {.white = 0.001, .markov = 0.005}},
       {"interference", {.white = 0.001, .flicker = 0.003, .walk = 0.003, .interference = 0.002}},
       {"tails", {.white = 0.002, .tails = 4.0}},
+      {"heavy_tails", {.white = 0.002, .tails = 3.0}},
+      {"poor_rows", {.white = 0.002, .poor_rows = 5.0}},
+      {"poor_third", {.white = 0.002, .poor_third = 4.0}},
+      {"poor_field", {.white = 0.002, .poor_field = 1.5}},
       {"swing", {.white = 0.002, .white_swing = 0.5}},
       {"quantised", {.white = 0.001, .flicker = 0.003, .walk = 0.003, .quantum_deg = 5e-4}}};
   return all;
@@ -157,11 +161,23 @@ std::vector<std::string> noises_outside_the_family() {
   return {"fractional", "markov", "interference", "tails", "swing", "quantised"};
 }
 
+std::vector<std::string> noises_that_differ_by_row() {
+  return {"poor_rows", "poor_third", "poor_field", "heavy_tails"};
+}
+
 double white_deviation(const ForeignNoise& noise, const World& world, const World::Window& window) {
   const double middle = 0.5 * static_cast<double>(window.begin + window.end);
   const double turn = 2.0 * std::numbers::pi * middle / static_cast<double>(world.size());
-  return noise.white / std::sqrt(window.seconds() / kHour) *
-         (1.0 + noise.white_swing * std::sin(turn));
+  double level = 1.0 + noise.white_swing * std::sin(turn);
+  // A fifth of the windows, by a hash of where they begin.
+  if ((window.begin * 2654435761u >> 7) % 5 == 0) level *= noise.poor_rows;
+  if (3.0 * middle > 2.0 * static_cast<double>(world.size())) level *= noise.poor_third;
+  if (noise.poor_field > 0.0) {
+    double squares = 0.0;
+    for (const auto& axis : world.field_ut) squares += std::pow(world.mean(axis, window), 2);
+    level *= 1.0 + noise.poor_field * std::sqrt(squares) / 100.0;
+  }
+  return noise.white / std::sqrt(window.seconds() / kHour) * level;
 }
 
 VectorXd draw_noise(const ForeignNoise& noise, const World& world, std::mt19937_64& engine) {

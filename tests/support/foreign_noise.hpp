@@ -24,14 +24,20 @@ struct ForeignNoise {
   double interference_period_s = 700.0;
   double tails = 0.0;        ///< degrees of freedom of the white part; 0: normal
   double white_swing = 0.0;  ///< the white level changes slowly by this share, once a run
+  // The white level of single windows, which their stated errors know.
+  double poor_rows = 1.0;    ///< times the usual, in a fifth of the windows
+  double poor_third = 1.0;   ///< times the usual, in the last third of the run
+  double poor_field = 0.0;   ///< more by this share for each 100 uT
   double quantum_deg = 0.0;  ///< resolution of the angle output
 };
 
 /// "white", "flicker", "walk", "navigation", "tactical"; outside the fitted family "fractional",
-/// "markov", "interference", "tails", "swing", "quantised". Precondition: one of them.
+/// "markov", "interference", "tails", "heavy_tails", "swing", "quantised"; white with errors that
+/// differ by row "poor_rows", "poor_third", "poor_field". Precondition: one of them.
 ForeignNoise foreign_noise(const std::string& name);
 std::vector<std::string> noises_of_the_family();
 std::vector<std::string> noises_outside_the_family();
+std::vector<std::string> noises_that_differ_by_row();
 
 /// Standard deviation of the white part of a window, deg/h.
 double white_deviation(const ForeignNoise& noise, const World& world, const World::Window& window);
