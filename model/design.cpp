@@ -73,7 +73,30 @@ Result<Design> Design::make(const Signals& signals, const config::ModelFile& mod
       if (!added) return added.error();
     }
   }
+  design.own_columns_ = design.columns_.size();
+  design.add_starts();
   return design;
+}
+
+void Design::add_starts() {
+  for (std::size_t term = 0; term < terms_.size(); ++term) {
+    if (!has_history(term)) continue;
+    const EffectInfo& info = std::get<const Effect*>(terms_[term].what)->info();
+    std::vector<double> somewhere;
+    for (const InnerParameter& parameter : info.parameters) somewhere.push_back(parameter.maximum);
+    const Eigen::Index count =
+        std::get<const Effect*>(terms_[term].what)->starts(*signals_, somewhere).cols();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      DesignColumn column;
+      column.name = fmt::format("start {} of {}", i + 1, terms_[term].name);
+      column.unit = info.units.front();
+      column.term = term;
+      column.column = static_cast<Eigen::Index>(terms_[term].columns.size());
+      column.start = true;
+      terms_[term].columns.push_back(columns_.size());
+      columns_.push_back(std::move(column));
+    }
+  }
 }
 
 Status Design::add_column(const config::ModelTerm& term, std::string key, std::string unit,
@@ -214,7 +237,12 @@ Eigen::MatrixXd Design::regressor(std::size_t term, const Eigen::VectorXd& inner
     values.push_back(inner[static_cast<Eigen::Index>(parameter)]);
   }
   if (const auto* effect = std::get_if<const Effect*>(&terms_[term].what)) {
-    return (*effect)->regressor(block, values);
+    const Eigen::MatrixXd own = (*effect)->regressor(block, values);
+    if (!(*effect)->info().has_history) return own;
+    const Eigen::MatrixXd starts = (*effect)->starts(block, values);
+    Eigen::MatrixXd both(own.rows(), own.cols() + starts.cols());
+    both << own, starts;
+    return both;
   }
   return std::get<Expression>(terms_[term].what).evaluate(block, values);
 }
@@ -232,10 +260,15 @@ std::vector<Eigen::Index> Design::free_columns() const {
   return free;
 }
 
-std::vector<Tangent> Design::tangents() const {
+std::vector<Eigen::Index> Design::places() const {
   std::vector<Eigen::Index> place(columns_.size(), -1);
   Eigen::Index next = 0;
   for (const Eigen::Index column : free_columns()) place[static_cast<std::size_t>(column)] = next++;
+  return place;
+}
+
+std::vector<Tangent> Design::tangents() const {
+  const std::vector<Eigen::Index> place = places();
   std::vector<Tangent> tangents;
   for (const Term& term : terms_) {
     for (const std::size_t parameter : term.parameters) {
@@ -273,6 +306,7 @@ void Design::visit(const Eigen::VectorXd& inner, bool with_tangents, const Signa
   for (std::size_t term = 0; term < terms_.size(); ++term) {
     if (has_history(term)) whole[term] = evaluate(term, inner, with_tangents, *signals_);
   }
+  const std::vector<Eigen::Index> place = places();
   const auto free = static_cast<Eigen::Index>(free_columns().size());
   const auto width = free + (with_tangents ? static_cast<Eigen::Index>(tangents().size()) : 0) + 1;
   for (std::size_t begin = 0; begin < signals_->rows(); begin += kBlock) {
@@ -282,7 +316,7 @@ void Design::visit(const Eigen::VectorXd& inner, bool with_tangents, const Signa
     const auto count = static_cast<Eigen::Index>(end - begin);
     Eigen::MatrixXd rows(count, width);
     rows.col(width - 1) = observed.segment(first, count);
-    Eigen::Index next_free = 0, next_tangent = free;
+    Eigen::Index next_tangent = free;
     for (std::size_t term = 0; term < terms_.size(); ++term) {
       std::optional<Evaluated> local;
       if (!whole[term]) local = evaluate(term, inner, with_tangents, block);
@@ -294,7 +328,7 @@ void Design::visit(const Eigen::VectorXd& inner, bool with_tangents, const Signa
         if (column.held) {
           rows.col(width - 1) -= *column.given * value;
         } else {
-          rows.col(next_free++) = value;
+          rows.col(place[at]) = value;
         }
       }
       for (const Eigen::MatrixXd& derivative : values.derivative) {

@@ -27,6 +27,8 @@ struct DesignColumn {
   Eigen::Index column = 0;      ///< of the term's regressor
   std::optional<double> given;  ///< the model file's value
   bool held = false;
+  /// Of how a memory began (Effect::starts): free in every fit, and no part of the model.
+  bool start = false;
 };
 
 /// One inner parameter; expression terms may share it.
@@ -47,14 +49,17 @@ class Design {
   static Result<Design> make(const Signals& signals, const config::ModelFile& model,
                              bool hold_given);
 
+  /// The model's own first, then those of the memories' beginnings.
   const std::vector<DesignColumn>& columns() const { return columns_; }
+  std::size_t own_columns() const { return own_columns_; }
   const std::vector<DesignParameter>& parameters() const { return parameters_; }
   std::size_t terms() const { return terms_.size(); }
   const std::string& term_name(std::size_t term) const { return terms_[term].name; }
   /// The signals that the terms need, each once.
   std::vector<std::string> signals_needed() const;
 
-  /// A term's regressor on all rows; `inner` has one value per parameter of the design.
+  /// A term's regressor on all rows, then its starts; `inner` has one value per parameter of the
+  /// design.
   Eigen::MatrixXd regressor(std::size_t term, const Eigen::VectorXd& inner) const;
   /// The same on some rows only. Precondition: the term has no history.
   Eigen::MatrixXd regressor(std::size_t term, const Eigen::VectorXd& inner,
@@ -96,9 +101,14 @@ class Design {
   Evaluated evaluate(std::size_t term, const Eigen::VectorXd& inner, bool with_tangents,
                      const Signals& block) const;
 
+  void add_starts();
+  /// Of each column: which free one it is; -1: held.
+  std::vector<Eigen::Index> places() const;
+
   const Signals* signals_;
   std::vector<Term> terms_;
   std::vector<DesignColumn> columns_;
+  std::size_t own_columns_ = 0;
   std::vector<DesignParameter> parameters_;
 };
 

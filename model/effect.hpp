@@ -50,6 +50,12 @@ class Effect {
   /// widths positive). Precondition: signals.missing_for(info()) is empty.
   virtual Eigen::MatrixXd regressor(const Signals& signals,
                                     std::span<const double> inner) const = 0;
+  /// What the regressor may lack because nobody knows in which state its memory began: rows x any
+  /// number of columns, in the regressor's unit, each zero outside one of the stretches of which
+  /// the past is unknown (effects/history.hpp). Their coefficients belong to the data, not to the
+  /// gyro. Physics bounds them: none is larger than the effect's own coefficient. Their number
+  /// depends on the signals alone. None where the effect has no memory.
+  virtual Eigen::MatrixXd starts(const Signals& signals, std::span<const double> inner) const = 0;
 };
 
 /// All effects, in the order of the documentation.

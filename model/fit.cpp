@@ -35,7 +35,12 @@ void warn_of_dependence(FitWork& work, const LinearFit& fit) {
     const auto at = static_cast<std::size_t>(free[static_cast<std::size_t>(column)]);
     return work.design.columns()[at].name;
   };
+  const auto is_start = [&](Eigen::Index column) {
+    const auto at = static_cast<std::size_t>(free[static_cast<std::size_t>(column)]);
+    return work.design.columns()[at].start;
+  };
   for (const std::vector<Eigen::Index>& group : fit.dependent) {
+    if (is_start(group.front())) continue;  // more freedom than these data have a use for
     const std::string left_out = name(group.front());
     if (group.size() == 1) {
       work.result.warnings.push_back(fmt::format(
@@ -160,7 +165,7 @@ Result<bool> choose_coloured(FitWork& work) {
 /// where one is possible.
 Result<FitResult> hold(FitWork work) {
   for (const DesignColumn& column : work.design.columns()) {
-    if (column.held) continue;
+    if (column.held || column.start) continue;
     return Error{ErrorCode::kBadInput, fmt::format("term {}: has no coefficient, expected one to "
                                                    "hold against the data",
                                                    column.name)};
@@ -177,6 +182,13 @@ Result<FitResult> hold(FitWork work) {
   }
   FitResult& result = work.result;
   result.degrees_of_freedom = static_cast<double>(work.observations.taken().size());
+  // How the memories began is the data's, not the model's: it is found here as in any fit.
+  if (work.free() > 0) {
+    const std::optional<LinearFit> starts = linear_fit_at(work.observations, work.inner);
+    if (!starts) return not_finite_at(work.observations, work.inner);
+    work.beta = starts->beta;
+    result.degrees_of_freedom -= static_cast<double>(starts->kept.size());
+  }
   fill_residuals(work);
   FitOptions free_options = work.options;
   free_options.as_is = false;
@@ -193,7 +205,8 @@ Result<FitResult> hold(FitWork work) {
   } else {
     fill_independent_noise(work);
   }
-  for (const DesignColumn& column : work.design.columns()) {
+  for (std::size_t i = 0; i < work.design.own_columns(); ++i) {
+    const DesignColumn& column = work.design.columns()[i];
     result.estimates.push_back({column.name, column.unit, *column.given, 0.0, 2.0, true});
   }
   for (std::size_t i = 0; i < work.design.parameters().size(); ++i) {

@@ -4,8 +4,10 @@
 //   y_i = sum_k beta_k g_k(x_i; a) + e_i
 //
 // Linear coefficients beta by QR, inner parameters a by variable projection (Ceres) over the
-// projected residual. The noise e is one of: independent with one unknown sigma; independent with
-// sigma proportional to a weight column; coloured (noise.hpp), estimated by REML with the fit.
+// projected residual. Where a memory (a loop, a lag) begins is unknown: each is free
+// (Effect::starts) and no part of the result. The noise e is one of: independent with one unknown
+// sigma; independent with sigma proportional to a weight column; coloured (noise.hpp), estimated by
+// REML with the fit.
 
 #include <Eigen/Core>
 #include <string>
@@ -84,6 +86,8 @@ Result<FitResult> fit(const Table& table, const config::ModelFile& model,
                       const FitOptions& options);
 
 /// Values of the model on the table, NaN where a signal is missing. All coefficients must be given.
+/// How an effect's memory began is found from the observable where the table has it, as in a fit;
+/// without it memories begin at rest.
 Result<Eigen::VectorXd> predict(const Table& table, const config::ModelFile& model);
 
 }  // namespace fogbench::model

@@ -101,7 +101,9 @@ void fill_estimates(FitWork& work) {
   FitResult& result = work.result;
   const auto error_of = [&](Eigen::Index i) { return std::sqrt(work.covariance(i, i)); };
   Eigen::Index next = 0;
-  for (const DesignColumn& column : work.design.columns()) {
+  std::vector<Eigen::Index> reported;  // of the free columns and inner parameters
+  for (std::size_t i = 0; i < work.design.own_columns(); ++i) {
+    const DesignColumn& column = work.design.columns()[i];
     if (column.held) {
       result.estimates.push_back({column.name, column.unit, *column.given, 0.0, 2.0, true});
       continue;
@@ -110,9 +112,11 @@ void fill_estimates(FitWork& work) {
     const bool left_out = std::isnan(work.covariance(next, next)) && work.beta[next] == 0.0;
     result.estimates.push_back({column.name, column.unit, left_out ? kMissing : work.beta[next],
                                 error_of(next), work.coverage, false});
-    ++next;
+    reported.push_back(next++);
   }
+  next = work.free();  // past the starts
   for (std::size_t i = 0; i < work.design.parameters().size(); ++i, ++next) {
+    reported.push_back(next);
     const DesignParameter& parameter = work.design.parameters()[i];
     const double value = work.inner[static_cast<Eigen::Index>(i)];
     result.estimates.push_back(
@@ -136,7 +140,7 @@ void fill_estimates(FitWork& work) {
           parameter.range->maximum));
     }
   }
-  result.covariance = work.covariance;
+  result.covariance = work.covariance(reported, reported);
 }
 
 void warn_of_correlation(FitResult& result) {
@@ -182,9 +186,10 @@ config::ModelFile fitted_model(const FitWork& work) {
   const FitResult& result = work.result;
   config::ModelFile fitted = work.model;
   const std::vector<DesignColumn>& columns = work.design.columns();
+  const std::size_t own = work.design.own_columns();
   std::vector<bool> present(fitted.terms.size(), false);
   for (config::ModelTerm& term : fitted.terms) term.standard_errors.clear();
-  for (std::size_t i = 0; i < columns.size(); ++i) {
+  for (std::size_t i = 0; i < own; ++i) {
     config::ModelTerm& term = fitted.terms[columns[i].term];
     const Estimate& estimate = result.estimates[i];
     const bool known = !std::isnan(estimate.value);
@@ -202,7 +207,7 @@ config::ModelFile fitted_model(const FitWork& work) {
   }
   for (std::size_t i = 0; i < work.design.parameters().size(); ++i) {
     const DesignParameter& parameter = work.design.parameters()[i];
-    const Estimate& estimate = result.estimates[columns.size() + i];
+    const Estimate& estimate = result.estimates[own + i];
     for (config::ModelTerm& term : fitted.terms) {
       const bool declares = term.expression && term.parameters.contains(parameter.key);
       const bool owns = term.effect + "." + parameter.key == parameter.name;

@@ -20,7 +20,7 @@ struct FitWork {
   Observations& observations;
   FitResult result;
   Eigen::VectorXd inner;
-  Eigen::VectorXd beta;        ///< of the free columns
+  Eigen::VectorXd beta;        ///< of the free columns, the starts' after the model's own
   Eigen::MatrixXd covariance;  ///< of [free columns, inner], NaN where not determined
   double coverage = 2.0;       ///< factor of the expanded uncertainty
 

@@ -193,13 +193,7 @@ void search_grid(const Observations& observations, Eigen::VectorXd& inner, Eigen
 Result<InnerSolution> solution_at(const Observations& observations, Eigen::VectorXd inner) {
   std::optional<LinearFit> fit = fit_at(observations, inner, true);
   if (fit) return InnerSolution{std::move(inner), std::move(*fit)};
-  const auto bad = observations.not_finite(inner);
-  return Error{ErrorCode::kBadInput,
-               bad ? fmt::format("term {}: is not a finite number in row {} of the data at the "
-                                 "starting values of its parameters",
-                                 observations.design().term_name(bad->first), bad->second + 1)
-                   : "the model has no finite derivative by its parameters at their starting "
-                     "values"};
+  return not_finite_at(observations, inner);
 }
 
 void silence_ceres() {
@@ -208,6 +202,20 @@ void silence_ceres() {
 }
 
 }  // namespace
+
+std::optional<LinearFit> linear_fit_at(const Observations& observations,
+                                       const Eigen::VectorXd& inner) {
+  return fit_at(observations, inner, false);
+}
+
+Error not_finite_at(const Observations& observations, const Eigen::VectorXd& inner) {
+  const auto bad = observations.not_finite(inner);
+  return {ErrorCode::kBadInput,
+          bad ? fmt::format("term {}: is not a finite number in row {} of the data at the "
+                            "starting values of its parameters",
+                            observations.design().term_name(bad->first), bad->second + 1)
+              : "the model has no finite derivative by its parameters at their starting values"};
+}
 
 Result<InnerSolution> refine_inner(const Observations& observations, const Eigen::VectorXd& start) {
   if (start.size() == 0) return solution_at(observations, start);

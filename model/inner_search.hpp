@@ -8,6 +8,7 @@
 // the number of rows.
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,10 @@ struct InnerSolution {
 Result<InnerSolution> search_inner(const Observations& observations);
 /// The same from a point near the solution.
 Result<InnerSolution> refine_inner(const Observations& observations, const Eigen::VectorXd& start);
+/// The linear fit alone, without tangents; nothing when a term is not finite there.
+std::optional<LinearFit> linear_fit_at(const Observations& observations,
+                                       const Eigen::VectorXd& inner);
+/// Says which term is not finite at these parameters.
+Error not_finite_at(const Observations& observations, const Eigen::VectorXd& inner);
 
 }  // namespace fogbench::model

@@ -21,6 +21,9 @@ const FunctionEffect& coil_heating() {
        .has_history = true},
       [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         return lag(signals, signals.signal("coil_heat"), inner[0], Gap::kStepped, LagStart::kZero);
+      },
+      [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+        return lag_starts(signals, signals.signal("coil_heat"), inner[0]);
       });
   return effect;
 }

@@ -12,17 +12,23 @@ class FunctionEffect final : public Effect {
  public:
   using Function = Eigen::MatrixXd (*)(const Signals&, std::span<const double>);
 
-  FunctionEffect(EffectInfo info, Function function)
-      : info_(std::move(info)), function_(function) {}
+  /// `beginnings`: the starts of an effect with a memory.
+  FunctionEffect(EffectInfo info, Function function, Function beginnings = nullptr)
+      : info_(std::move(info)), function_(function), starts_(beginnings) {}
 
   const EffectInfo& info() const override { return info_; }
   Eigen::MatrixXd regressor(const Signals& signals, std::span<const double> inner) const override {
     return function_(signals, inner);
   }
+  Eigen::MatrixXd starts(const Signals& signals, std::span<const double> inner) const override {
+    if (starts_ == nullptr) return Eigen::MatrixXd(static_cast<Eigen::Index>(signals.rows()), 0);
+    return starts_(signals, inner);
+  }
 
  private:
   EffectInfo info_;
   Function function_;
+  Function starts_;
 };
 
 /// The three effects of an x/y/z family.

@@ -1,6 +1,7 @@
 #include "model/effects/history.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,7 +18,113 @@ double advanced(double x, double from, double to, double span_s, double tau_s) {
   return to - trail + (x - from + trail) * decay;
 }
 
+/// More gaps than this are no accident.
+constexpr std::size_t kMostGaps = 6;
+/// Rows are missing where this share of the usual step is beyond the usual gap, and 10 s at least:
+/// in less no field and no temperature goes anywhere and comes back.
+constexpr double kMissingStep = 0.75;
+constexpr double kLeastGap_s = 10.0;
+/// Where in its band a play may begin, in half-widths from the middle. Between them the play is
+/// nearly a mean of its neighbours.
+constexpr std::array<double, 4> kBeginnings = {-1.0, -1.0 / 3.0, 1.0 / 3.0, 1.0};
+
+double middle_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// First rows after a gap that is longer than usual; none where that is not known.
+std::vector<std::size_t> rows_after_gaps(const Signals& signals) {
+  if (!signals.available("time_s")) return {};
+  const Signals::View time = signals.signal("time_s");
+  const Signals::View duration = signals.signal("duration_s");
+  std::vector<double> gaps, steps;
+  std::vector<std::size_t> rows;
+  for (const Signals::RunRange& run : signals.runs()) {
+    for (std::size_t i = run.begin + 1; i < run.end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const double step = time[row] - time[row - 1];
+      const double gap = step - (duration[row] + duration[row - 1]) / 2.0;
+      if (!std::isfinite(gap)) continue;
+      steps.push_back(step);
+      gaps.push_back(gap);
+      rows.push_back(i);
+    }
+  }
+  if (rows.empty()) return {};
+  const double most = middle_of(gaps) + std::max(kMissingStep * middle_of(steps), kLeastGap_s);
+  std::vector<std::size_t> after;
+  for (std::size_t i = 0; i < rows.size() && after.size() <= kMostGaps; ++i) {
+    if (gaps[i] > most) after.push_back(rows[i]);
+  }
+  return after.size() <= kMostGaps ? after : std::vector<std::size_t>{};
+}
+
 }  // namespace
+
+std::vector<Signals::RunRange> stretches(const Signals& signals) {
+  const std::vector<std::size_t> cuts = rows_after_gaps(signals);
+  std::vector<Signals::RunRange> out;
+  for (const Signals::RunRange& run : signals.runs()) {
+    out.push_back(run);
+    for (const std::size_t cut : cuts) {
+      if (cut <= run.begin || cut >= run.end) continue;
+      out.back().end = cut;
+      out.push_back({cut, run.end});
+    }
+  }
+  return out;
+}
+
+Eigen::MatrixXd play_starts(const Signals& signals, const Eigen::VectorXd& u, double width) {
+  const std::vector<Signals::RunRange> parts = stretches(signals);
+  const auto places = static_cast<Eigen::Index>(kBeginnings.size());
+  const Eigen::VectorXd assumed = play(signals, u, width);
+  Eigen::MatrixXd starts =
+      Eigen::MatrixXd::Zero(u.size(), places * static_cast<Eigen::Index>(parts.size()));
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    for (Eigen::Index place = 0; place < places; ++place) {
+      auto column = starts.col(places * static_cast<Eigen::Index>(part) + place);
+      double state = kMissing;
+      for (std::size_t i = parts[part].begin; i < parts[part].end; ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        if (std::isnan(u[row])) continue;
+        if (std::isnan(state))
+          state = u[row] + kBeginnings[static_cast<std::size_t>(place)] * width;
+        state = std::min(std::max(state, u[row] - width), u[row] + width);
+        column[row] = state - assumed[row];
+      }
+    }
+  }
+  return starts;
+}
+
+Eigen::MatrixXd lag_starts(const Signals& signals, const Eigen::VectorXd& u, double tau_s) {
+  const Signals::View time = signals.signal("time_s");
+  const Signals::View duration = signals.signal("duration_s");
+  const std::vector<Signals::RunRange> parts = stretches(signals);
+  const auto known = u.array().isFinite();
+  const double least = known.select(u.array(), std::numeric_limits<double>::infinity()).minCoeff();
+  const double most = known.select(u.array(), -std::numeric_limits<double>::infinity()).maxCoeff();
+  Eigen::MatrixXd starts = Eigen::MatrixXd::Zero(u.size(), static_cast<Eigen::Index>(parts.size()));
+  if (!(most > least)) return starts;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    double begin = kMissing;
+    for (std::size_t i = parts[part].begin; i < parts[part].end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      if (std::isnan(u[row]) || std::isnan(time[row])) continue;
+      const double half = std::isnan(duration[row]) ? 0.0 : duration[row] / 2.0;
+      if (std::isnan(begin)) begin = time[row] - half;
+      // The mean of an exponential over the window.
+      const double from = (time[row] - half - begin) / tau_s, length = 2.0 * half / tau_s;
+      const double mean = length > 0.0 ? -std::expm1(-length) / length : 1.0;
+      starts(row, static_cast<Eigen::Index>(part)) =
+          (most - least) * std::exp(-std::max(from, 0.0)) * mean;
+    }
+  }
+  return starts;
+}
 
 Eigen::VectorXd play(const Signals& signals, const Eigen::VectorXd& u, double width) {
   Eigen::VectorXd result(u.size());

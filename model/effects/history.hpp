@@ -2,16 +2,25 @@
 // States that effects carry through a run: the play operator and the first-order lag.
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "model/signals.hpp"
 
 namespace fogbench::model::effects {
+
+/// Stretches of rows of which the past is unknown: each run's, cut where rows are missing in the
+/// middle of it (a voided point, an interruption): what was between them may have been anything.
+/// Where more than a few are missing the rows are sparse by intent, and only the runs count.
+std::vector<Signals::RunRange> stretches(const Signals& signals);
 
 /// The play (backlash) operator of half-width `width`: p follows u at the distance width,
 ///   p_i = min(max(p_(i-1), u_i - width), u_i + width),
 /// from p = 0 (virgin: reference temperature, no field) before each run's first row. Rows where u
 /// is missing leave the state alone and are NaN.
 Eigen::VectorXd play(const Signals& signals, const Eigen::VectorXd& u, double width);
+/// What the play differs by when it begins each stretch elsewhere in its band: at both ends and at
+/// two places between them. Zero from the first full traverse on.
+Eigen::MatrixXd play_starts(const Signals& signals, const Eigen::VectorXd& u, double width);
 
 /// What u does in the gap between one averaging window's end and the next one's beginning.
 enum class Gap {
@@ -40,5 +49,8 @@ GapMeans temperature_rates_of_gaps(const Signals& signals);
 /// and x itself where the duration is 0. Rows where u or the time is missing are bridged and NaN.
 Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau_s, Gap gap,
                     LagStart start = LagStart::kEquilibrium, const GapMeans& gap_means = {});
+/// What the lag of u differs by when it does not begin each stretch as assumed: the range of u,
+/// dying away with tau, averaged over each window.
+Eigen::MatrixXd lag_starts(const Signals& signals, const Eigen::VectorXd& u, double tau_s);
 
 }  // namespace fogbench::model::effects

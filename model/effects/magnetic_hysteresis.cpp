@@ -21,6 +21,9 @@ const Family& magnetic_hysteresis() {
            .has_history = true},
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             return play(signals, field(signals, "field_x_ut"), inner[0]);
+          },
+          [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+            return play_starts(signals, field(signals, "field_x_ut"), inner[0]);
           }),
       FunctionEffect(
           {.id = "magnetic_hysteresis_y",
@@ -35,6 +38,9 @@ const Family& magnetic_hysteresis() {
            .has_history = true},
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             return play(signals, field(signals, "field_y_ut"), inner[0]);
+          },
+          [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+            return play_starts(signals, field(signals, "field_y_ut"), inner[0]);
           }),
       FunctionEffect(
           {.id = "magnetic_hysteresis_z",
@@ -49,6 +55,9 @@ const Family& magnetic_hysteresis() {
            .has_history = true},
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             return play(signals, field(signals, "field_z_ut"), inner[0]);
+          },
+          [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+            return play_starts(signals, field(signals, "field_z_ut"), inner[0]);
           })};
   return family;
 }

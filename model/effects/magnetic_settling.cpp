@@ -21,6 +21,9 @@ const Family& magnetic_settling() {
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             const Eigen::VectorXd h = field(signals, "field_x_ut");
             return h - lag(signals, h, inner[0], Gap::kStepped);
+          },
+          [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+            return lag_starts(signals, field(signals, "field_x_ut"), inner[0]);
           }),
       FunctionEffect(
           {.id = "magnetic_settling_y",
@@ -36,6 +39,9 @@ const Family& magnetic_settling() {
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             const Eigen::VectorXd h = field(signals, "field_y_ut");
             return h - lag(signals, h, inner[0], Gap::kStepped);
+          },
+          [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+            return lag_starts(signals, field(signals, "field_y_ut"), inner[0]);
           }),
       FunctionEffect(
           {.id = "magnetic_settling_z",
@@ -51,6 +57,9 @@ const Family& magnetic_settling() {
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             const Eigen::VectorXd h = field(signals, "field_z_ut");
             return h - lag(signals, h, inner[0], Gap::kStepped);
+          },
+          [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+            return lag_starts(signals, field(signals, "field_z_ut"), inner[0]);
           })};
   return family;
 }

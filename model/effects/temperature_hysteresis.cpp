@@ -20,6 +20,9 @@ const FunctionEffect& temperature_hysteresis() {
        .has_history = true},
       [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         return play(signals, excess_temperature(signals), inner[0]);
+      },
+      [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+        return play_starts(signals, excess_temperature(signals), inner[0]);
       });
   return effect;
 }

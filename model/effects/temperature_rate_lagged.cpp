@@ -21,6 +21,9 @@ const FunctionEffect& temperature_rate_lagged() {
       [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         return lag(signals, signals.signal("temperature_rate_c_per_h"), inner[0], Gap::kLinear,
                    LagStart::kEquilibrium, temperature_rates_of_gaps(signals));
+      },
+      [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
+        return lag_starts(signals, signals.signal("temperature_rate_c_per_h"), inner[0]);
       });
   return effect;
 }
