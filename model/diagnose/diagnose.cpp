@@ -27,6 +27,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// What was found explains the table when rows left out are missed by no more than this many noise
+// floors: the rest of a fit that was made without them, and chance, take less.
+constexpr double kFarFromFloor = 1.6;
+
 std::string name_of_parameter(const Candidate& candidate) {
   return candidate.parameter_name.empty() ? std::string(candidate.parameter->name)
                                           : candidate.parameter_name;
@@ -56,6 +60,19 @@ Table without_readings(Table table, const std::string& observable,
   for (const LeftOut& row : rows) values[row.row] = kMissing;
   table.set_column(observable, std::move(values));
   return table;
+}
+
+/// Inside its range, by more than a fiftieth at either end.
+bool within(const InnerParameter& range, const Estimate& e) {
+  constexpr double kEdge = 0.02;
+  if (!std::isfinite(e.value)) return false;
+  if (range.logarithmic && range.minimum > 0.0) {
+    const double share =
+        std::log(e.value / range.minimum) / std::log(range.maximum / range.minimum);
+    return share > kEdge && share < 1.0 - kEdge;
+  }
+  const double share = (e.value - range.minimum) / (range.maximum - range.minimum);
+  return share > kEdge && share < 1.0 - kEdge;
 }
 
 /// The work of one diagnosis, part by part.
@@ -112,7 +129,7 @@ class Work {
     search_options.first_level = kShareOfEffects * options_.false_alarm_rate;
     search_options.outside_level = kShareOfShapes * options_.false_alarm_rate;
     search_options.seed = options_.seed;
-    const SearchResult found = search(input_of_search, search_options);
+    SearchResult found = search(input_of_search, search_options);
     d_.not_testable = library->not_testable;
     d_.bounds = found.bounds;
     d_.judged = !found.p_of_step.empty() || found.p_outside < 1.0;
@@ -120,6 +137,15 @@ class Work {
 
     tell("refitting with what was found", 0.8);
     climb_ladder(*library, found.found);
+    // The refit leaves the grid: what it does not identify is no name, and the search goes on.
+    while (const auto lost = not_identified(*library, found.found)) {
+      search_options.refused.push_back(lost->candidate);
+      std::vector<Found> refused = std::move(found.refused);
+      refused.push_back(*lost);
+      found = search(input_of_search, search_options);
+      found.refused.insert(found.refused.begin(), refused.begin(), refused.end());
+      climb_ladder(*library, found.found);
+    }
     doubt_the_thermometer(found);
 
     tell("looking for what has no name", 0.9);
@@ -177,10 +203,42 @@ class Work {
     return heldout_rms(table_.bench_with_history(), table_.windows(), fit.fitted, fit.noise.noise);
   }
 
-  /// Refits and predicts held-out blocks with one effect more each time.
+  /// The last found effect whose refit leaves no coefficient beyond its expanded uncertainty, or
+  /// takes its inner parameter to the end of its range or beyond; nothing: there is none.
+  std::optional<Found> not_identified(const Library& library,
+                                      const std::vector<Found>& found) const {
+    for (std::size_t i = found.size(); i-- > 0;) {
+      const MissingEffect& missing = d_.missing[i];
+      const Candidate& candidate = library.candidates[found[i].candidate];
+      Found lost = found[i];
+      bool stands = false, known = false;
+      for (const Estimate& e : missing.estimates) {
+        const double expanded = e.coverage_factor * e.standard_error;
+        if (e.name != missing.inner_name) {
+          known = known || std::isfinite(expanded);
+          stands = stands || std::abs(e.value) > expanded;
+        } else if (candidate.parameter && !candidate.instant() &&
+                   !within(*candidate.parameter, e)) {
+          lost.refusal = Refusal::kAtEdge;
+        }
+      }
+      if (known && !stands) lost.refusal = Refusal::kNotDistinguished;
+      if (lost.refusal != Refusal::kNone) return lost;
+    }
+    return {};
+  }
+
+  /// Refits and predicts held-out blocks with one effect more each time. The RMS is that of least
+  /// squares, so that it never rises with a term more.
   void climb_ladder(const Library& library, const std::vector<Found>& found) {
+    d_.ladder.clear();
+    d_.missing.clear();
+    d_.ambiguous.clear();
+    fits_.clear();
     d_.heldout_rms = heldout(d_.before.fit);
-    d_.ladder.push_back({"", d_.before.fit.rms, d_.heldout_rms});
+    double rms = least_squares_rms(d_.table, d_.before.fit.fitted);
+    if (!std::isfinite(rms)) rms = d_.before.fit.rms;
+    d_.ladder.push_back({"", rms, d_.heldout_rms});
     d_.after = d_.before.fit;
     std::vector<Found> so_far;
     for (const Found& f : found) {
@@ -191,8 +249,13 @@ class Work {
           fit(table_.bench_with_history(), extended_by(model_, library, so_far), fit_options());
       fits_.push_back(d_.after);
       if (refit) {
+        // What this rung's columns leave at the inner values of the rung below: one fit of many.
+        const config::ModelFile nested = extended_by(d_.after.fitted, library, {f});
         d_.after = *refit;
-        missing.rms_after = refit->rms;
+        for (const config::ModelFile& model : {refit->fitted, nested}) {
+          rms = std::fmin(rms, least_squares_rms(d_.table, model));
+        }
+        missing.rms_after = rms;
         missing.heldout_rms_after = heldout(*refit);
         d_.ladder.push_back({f.effect, missing.rms_after, missing.heldout_rms_after});
       }
@@ -323,12 +386,15 @@ class Work {
       d_.explained_by_thermometer =
           fmt::format("the thermometer's resolution of {:g} degC", table_.resolution_c());
     }
+    d_.refused = found.refused;
+    d_.far_from_floor = !d_.missing.empty() && !within_steps_ && std::isfinite(d_.noise_floor) &&
+                        d_.missing.back().heldout_rms_after > kFarFromFloor * d_.noise_floor;
     if (uneven) d_.unexplained.depends_on = adequacy.depends_on;
     if (outside) {
       d_.unexplained.p_value = std::min(d_.unexplained.p_value, found.p_outside);
       d_.unexplained.shape = found.outside_shape;
     }
-    if (uneven || outside) {
+    if (uneven || outside || d_.far_from_floor) {
       d_.verdict = Verdict::kUnexplained;
       d_.p_adequate = std::min(d_.p_adequate, d_.unexplained.p_value);
     } else if (!d_.ambiguous.empty()) {

@@ -78,6 +78,8 @@ struct Diagnosis {
   double walk_beyond = 0.0;
   NoisePrior::Source noise_source = NoisePrior::Source::kInstruments;
   std::vector<MissingEffect> missing;
+  std::vector<Found> refused;   ///< led, and cannot be named: Found::refusal says why
+  bool far_from_floor = false;  ///< rows left out are missed by much more than noise makes
   std::vector<std::vector<std::string>> ambiguous;
   Unexplained unexplained;
   std::vector<NotTestable> not_testable;

@@ -12,7 +12,7 @@ FirstLook look_at(const SearchInput& input, const Library& smooth, std::uint64_t
   const Stage stage(input, input.base, seed);
   out.looked = true;
   if (!stage.effects().empty()) {
-    const Eigen::Index leader = stage.leader();
+    const Eigen::Index leader = stage.leader({});
     out.p_effects = stage.p_value(leader);
     out.looks_like = stage.candidate(leader).name;
   }

@@ -22,6 +22,9 @@ constexpr std::size_t kFolds = 8;
 // an extrapolation.
 constexpr std::size_t kBlocksPerFold = 3;
 
+// Of a left-out direction, in units of its noise: what the model's columns leave of it.
+constexpr double kUnpredictable = 1e-6;
+
 /// Of the rows that have a measurement.
 struct System {
   MatrixXd x;
@@ -113,6 +116,56 @@ std::optional<VectorXd> predicted_badly(const MatrixXd& columns, const VectorXd&
   return truth - columns(fold.left, Eigen::all) * qr.solve(seen);
 }
 
+/// How well rows that were left out are predicted.
+struct LeftOut {
+  double cost = 0.0;        ///< what independent unit errors would add up to
+  Index unpredictable = 0;  ///< directions of which the other rows say nothing
+};
+
+/// A model's columns cleared from the data under the noise: all that leaving rows out asks of it.
+///
+///   P = Omega^-1 - Omega^-1 X (X' Omega^-1 X)^-1 X' Omega^-1
+///   e_L = (P_LL)^-1 (P y)_L,   cost = e_L' (Omega^-1)_LL e_L
+///
+/// e_L is what is left of rows L when model and noise of the others have predicted them, exactly
+/// and without a refit. Where P_LL is singular nothing but L itself shows a column.
+class Cleared {
+ public:
+  /// root: L^-1 with Omega = L L'.
+  Cleared(const MatrixXd& root, const MatrixXd& x, const VectorXd& y) : residual_(root * y) {
+    q_.resize(root.rows(), 0);
+    if (x.cols() > 0) {
+      const MatrixXd whitened = root * x;
+      const Eigen::ColPivHouseholderQR<MatrixXd> qr(whitened);
+      q_ = qr.householderQ() * MatrixXd::Identity(root.rows(), qr.rank());
+    }
+    residual_ -= q_ * (q_.transpose() * residual_);
+  }
+
+  /// `part`: the columns of the root at L; `known`: of (Omega^-1)_LL.
+  LeftOut left_out(const MatrixXd& part, const Eigen::LLT<MatrixXd>& known) const {
+    const MatrixXd seen = known.matrixL().solve(part.transpose() * q_);
+    const VectorXd scores = known.matrixL().solve(part.transpose() * residual_);
+    const MatrixXd share = MatrixXd::Identity(seen.rows(), seen.rows()) - seen * seen.transpose();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(share);
+    LeftOut out;
+    for (Index i = 0; i < share.rows(); ++i) {
+      const double value = eigen.eigenvalues()[i];
+      if (value < kUnpredictable) {
+        ++out.unpredictable;
+        continue;
+      }
+      const double error = eigen.eigenvectors().col(i).dot(scores) / value;
+      out.cost += error * error;
+    }
+    return out;
+  }
+
+ private:
+  MatrixXd q_;
+  VectorXd residual_;
+};
+
 }  // namespace
 
 std::vector<HeldoutVote> heldout_votes(const Windows& windows, const NoiseCoefficients& noise,
@@ -120,28 +173,24 @@ std::vector<HeldoutVote> heldout_votes(const Windows& windows, const NoiseCoeffi
                                        const VectorXd& y, Index bench_rows) {
   const auto whitener = make_whitener(windows, noise);
   if (!whitener) return {};
-  std::vector<Index> bench(static_cast<std::size_t>(bench_rows)), quiet;
-  std::iota(bench.begin(), bench.end(), Index{0});
-  for (Index i = bench_rows; i < windows.rows(); ++i) quiet.push_back(i);
+  const MatrixXd root = (*whitener)->whiten(MatrixXd::Identity(windows.rows(), windows.rows()));
+  const Cleared full(root, with, y);
+  std::vector<Cleared> smaller;
+  for (const MatrixXd& columns : without) smaller.emplace_back(root, columns, y);
 
+  std::vector<Index> bench(static_cast<std::size_t>(bench_rows));
+  std::iota(bench.begin(), bench.end(), Index{0});
   std::vector<HeldoutVote> votes(without.size());
-  for (Fold& fold : folds_of(bench)) {
-    fold.kept.insert(fold.kept.end(), quiet.begin(), quiet.end());
-    if (static_cast<Index>(fold.kept.size()) < with.cols()) continue;
-    const auto others = make_whitener(windows_at(windows, fold.kept), noise);
-    if (!others) continue;
-    const auto full = predicted_badly(with, y, fold, others->get(), with.cols());
-    if (!full) continue;
-    MatrixXd errors = MatrixXd::Zero(windows.rows(), static_cast<Index>(without.size()) + 1);
-    errors(fold.left, 0) = *full;
+  for (const Fold& fold : folds_of(bench)) {
+    const MatrixXd part = root(Eigen::all, fold.left);
+    const Eigen::LLT<MatrixXd> known(part.transpose() * part);
+    if (known.info() != Eigen::Success) continue;
+    const LeftOut ours = full.left_out(part, known);
     for (std::size_t i = 0; i < without.size(); ++i) {
-      const auto less = predicted_badly(without[i], y, fold, others->get(), 0);
-      errors(fold.left, static_cast<Index>(i) + 1) = *less;
-    }
-    errors = (*whitener)->whiten(errors);
-    for (std::size_t i = 0; i < without.size(); ++i) {
-      const double gain =
-          errors.col(static_cast<Index>(i) + 1).squaredNorm() - errors.col(0).squaredNorm();
+      const LeftOut theirs = smaller[i].left_out(part, known);
+      // The other rows do not show what the part alone holds: no vote.
+      if (ours.unpredictable > theirs.unpredictable) continue;
+      const double gain = theirs.cost - ours.cost;
       votes[i].gain += gain;
       votes[i].better += gain > 0.0 ? 1 : 0;
       ++votes[i].folds;
@@ -184,6 +233,27 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
   const auto system = system_of(signals, fitted);
   if (!system) return kMissing;
   return heldout_rms(windows, noise, system->x, system->y, system->y.size());
+}
+
+double least_squares_rms(const Table& table, const config::ModelFile& fitted) {
+  const Signals signals(table, fitted.reference_temperature_c);
+  const auto system = system_of(signals, fitted);
+  if (!system) return kMissing;
+  std::vector<Index> complete;
+  for (Index i = 0; i < system->y.size(); ++i) {
+    if (system->x.row(i).allFinite()) complete.push_back(i);
+  }
+  if (complete.empty()) return kMissing;
+  VectorXd left = system->y(complete);
+  if (system->x.cols() > 0) {
+    MatrixXd x = system->x(complete, Eigen::all);
+    for (Index column = 0; column < x.cols(); ++column) {
+      const double length = x.col(column).stableNorm();
+      if (length > 0.0) x.col(column) /= length;
+    }
+    left -= x * Eigen::CompleteOrthogonalDecomposition<MatrixXd>(x).solve(left);
+  }
+  return left.stableNorm() / std::sqrt(static_cast<double>(left.size()));
 }
 
 }  // namespace fogbench::model

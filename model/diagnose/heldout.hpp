@@ -23,11 +23,15 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
 double heldout_rms(const Windows& windows, const NoiseCoefficients& noise, const Eigen::MatrixXd& x,
                    const Eigen::VectorXd& y, Eigen::Index bench_rows);
 
+/// RMS residual of least squares on the columns of `fitted`, its inner parameters as they are: it
+/// never rises with a term more. NaN when the model cannot be evaluated.
+double least_squares_rms(const Table& table, const config::ModelFile& fitted);
+
 /// Whether blocks of rows that took no part in the fit are predicted better with some columns than
 /// without them.
 struct HeldoutVote {
-  /// Fall of the predictions' weighted sum of squares: what independent unit errors would add up
-  /// to. At most zero: nothing was learnt that holds elsewhere.
+  /// Fall of the weighted sum of squares of what the other rows, their noise included, do not
+  /// predict: what independent unit errors would add up to.
   double gain = 0.0;
   int better = 0;  ///< of `folds`
   int folds = 0;   ///< in which the other rows show the columns at all

@@ -86,7 +86,10 @@ void add_effect(LibraryBuilder& builder, const Effect& effect) {
   if (std::string because = unexcited_because(info, signals); !because.empty()) {
     return builder.refuse(id, std::move(because));
   }
-  Candidate candidate{.name = id, .kind = Candidate::Kind::kEffect, .slow = is_slow(id)};
+  Candidate candidate{.name = id,
+                      .kind = Candidate::Kind::kEffect,
+                      .own = static_cast<Eigen::Index>(info.columns.size()),
+                      .slow = is_slow(id)};
   candidate.terms.push_back({.effect = id});
   candidate.units.assign(info.units.begin(), info.units.end());
   const auto is_time = [](std::string_view name) {
@@ -149,6 +152,7 @@ Status add_together(LibraryBuilder& builder, Candidate candidate) {
     candidate.units.push_back(term.unit);
   }
   if (expressions.empty()) return {};
+  candidate.own = static_cast<Eigen::Index>(expressions.size());
   candidate.shapes.push_back(
       [expressions, source = builder.source(), &signals = builder.signals()](double) {
         MatrixXd out(static_cast<Eigen::Index>(signals.rows()),

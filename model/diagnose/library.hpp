@@ -37,6 +37,9 @@ struct Candidate {
   std::string parameter_name;  ///< of a user's term; catalogue effects name theirs in `parameter`
   /// Columns on the rows of WorkingTable, the catalogue's own shape first. Shadows have none.
   std::vector<Shape> shapes;
+  /// The first of a shape's columns are the effect, those that follow how its memory began: these
+  /// belong to the data, and are no evidence of the effect.
+  Eigen::Index own = 1;
   /// The variable of which the effect is a curve: no memory, nothing else. Empty: it is more.
   std::string curve_over;
   /// The simpler effect that it becomes in a limit of its inner parameter, and that is meant where

@@ -32,6 +32,9 @@ constexpr std::size_t kMostFurtherShapes = 3;
 // An added effect stays when dropping it is refuted at this level.
 constexpr double kStays = 0.02;
 constexpr int kMostChanges = 8;
+// Of the held-out cost, twice a log-likelihood: rows that took no part in the fit are exp(3), twenty
+// times, as likely with the effect as without it.
+constexpr double kLeastGain = 6.0;
 
 MatrixXd joined(const MatrixXd& a, const MatrixXd& b) {
   MatrixXd out(a.rows(), a.cols() + b.cols());
@@ -39,20 +42,27 @@ MatrixXd joined(const MatrixXd& a, const MatrixXd& b) {
   return out;
 }
 
-/// The columns that a found effect adds: its own, the inner parameter's tangent, and what its other
-/// shapes differ by: which of them is the real one is not known to the last digit, and the
-/// difference is no second effect.
+/// The effect itself: its own columns, those of its memory's beginnings, the inner parameter's
+/// tangent.
+MatrixXd core_of(const Found& found, const Candidate& candidate) {
+  MatrixXd out = candidate.shapes[found.shape](found.inner);
+  if (!candidate.parameter) return out;
+  const auto own = [&](double inner) -> MatrixXd {
+    return candidate.shapes[found.shape](inner).leftCols(candidate.own);
+  };
+  // An instant moves by rows, everything else smoothly.
+  const double step =
+      candidate.instant() ? 0.5 * candidate.spacing(found.inner) : 1e-3 * std::abs(found.inner);
+  return joined(out, (own(found.inner + step) - own(found.inner - step)) / (2.0 * step));
+}
+
+/// All that a found effect adds to the base: itself, and what its other shapes differ by: which of
+/// them is the real one is not known to the last digit, and the difference is no second effect.
 MatrixXd columns_of(const Found& found, const Candidate& candidate) {
-  const Shape& shape = candidate.shapes[found.shape];
-  MatrixXd out = shape(found.inner);
-  if (candidate.parameter) {
-    // An instant moves by rows, everything else smoothly.
-    const double step =
-        candidate.instant() ? 0.5 * candidate.spacing(found.inner) : 1e-3 * std::abs(found.inner);
-    out = joined(out, (shape(found.inner + step) - shape(found.inner - step)) / (2.0 * step));
-  }
+  MatrixXd out = core_of(found, candidate);
   for (std::size_t other = 0; other < candidate.shapes.size(); ++other) {
-    if (other != found.shape) out = joined(out, candidate.shapes[other](found.inner));
+    if (other == found.shape) continue;
+    out = joined(out, candidate.shapes[other](found.inner).leftCols(candidate.own));
   }
   for (const Block& more : found.more) out = joined(out, candidate.shapes[more.shape](more.inner));
   return out;
@@ -64,17 +74,19 @@ class Search {
       : input_(input), options_(options) {}
 
   SearchResult run() {
-    while (found().size() < options_.most_effects && step()) {
-    }
+    refused_ = options_.refused;
     do {
+      while (found().size() < options_.most_effects && step()) {
+      }
       judge_all();
-    } while (!hold_out());
+    } while (!pass_gates());
     doubt_sums_of_one_variable();
     return std::move(result_);
   }
 
  private:
   std::vector<Found>& found() { return result_.found; }
+  const std::vector<Found>& found() const { return result_.found; }
 
   /// The state with all found effects but one in the base. The one with none of them is kept.
   Stage& stage_without(const Found* except) {
@@ -90,8 +102,8 @@ class Search {
   bool step() {
     if (input_.y.size() - base_with(input_, found()).cols() < kFewestFreeRows) return false;
     Stage& stage = stage_without(nullptr);
-    if (stage.effects().empty()) return look_outside(stage);
-    const Index best = stage.leader();
+    if (!leads_to_a_name(stage)) return look_outside(stage);
+    const Index best = stage.leader(refused_);
     const double p = stage.p_value(best);
     result_.p_of_step.push_back(p);
     if (p > (found().empty() ? options_.first_level : options_.later_level)) {
@@ -116,10 +128,30 @@ class Search {
 
   /// No effect is left to be found: is there still a shape that none has? Always false: the end.
   bool look_outside(const Stage& stage) {
-    if (stage.shadows().empty()) return false;
-    const Index best = stage.best(stage.shadows());
+    const std::vector<Index> outside = with_refused(stage, -1);
+    if (outside.empty()) return false;
+    const Index best = stage.best(outside);
     convict(stage.candidate(best).name, stage.p_value(best), options_.outside_level);
     return false;
+  }
+
+  /// An effect is left that was not refused.
+  bool leads_to_a_name(const Stage& stage) const {
+    return std::any_of(stage.effects().begin(), stage.effects().end(), [&](Index c) {
+      return std::find(refused_.begin(), refused_.end(), static_cast<std::size_t>(c)) ==
+             refused_.end();
+    });
+  }
+
+  /// The shadows, and the effects that were refused: what could not be named may still be the
+  /// truth.
+  std::vector<Index> with_refused(const Stage& stage, Index except) const {
+    std::vector<Index> out = stage.shadows();
+    for (const std::size_t c : refused_) {
+      const auto other = static_cast<Index>(c);
+      if (other != except && stage.detector().testable(other)) out.push_back(other);
+    }
+    return out;
   }
 
   void convict(const std::string& shape, double p, double level) {
@@ -141,6 +173,7 @@ class Search {
       const auto own = static_cast<Index>(f.candidate);
       const Candidate& candidate = stage.candidate(own);
       if (f.more.size() >= kMostFurtherShapes || !stage.detector().testable(own)) continue;
+      if (stage.at_edge(own)) continue;  // there it is another effect, or two
       const double lag = stage.lead()[leader] - stage.lead()[own];
       const bool as_well =
           own == leader || (!candidate.instant() && lag < kHopeless &&
@@ -166,7 +199,7 @@ class Search {
       found().erase(found().begin() + static_cast<std::ptrdiff_t>(at));
       return false;
     }
-    const Index leader = stage.leader();
+    const Index leader = stage.leader(refused_);
     if (may_change && leader != own && !is_found(static_cast<std::size_t>(leader))) {
       f = {.candidate = static_cast<std::size_t>(leader),
            .effect = stage.candidate(leader).name,
@@ -192,26 +225,61 @@ class Search {
     }
   }
 
-  /// Drops the addition that predicts rows which took no part in the fit least well, where it does
-  /// so no better than the model without it. The first stays, and says so: its global p-value
-  /// stands on its own. False when the list changed.
-  bool hold_out() {
+  /// A name needs all of these: its inner parameter lies inside its range, its coefficient stands
+  /// beside those of all the others, and rows that took no part in the fit are predicted better
+  /// with it. What fails is refused for good, one at a time, the last found first, and the search
+  /// goes on without it. False when the list changed.
+  bool pass_gates() {
     if (found().empty()) return true;
-    const MatrixXd with = base_with(input_, found());
-    const auto noise = gls(input_.shapes, with, input_.y);
+    const auto noise = gls(input_.shapes, base_with(input_, found()), input_.y);
     if (!noise) return true;
-    std::vector<MatrixXd> without;
-    for (const Found& f : found()) without.push_back(base_with(input_, found(), &f));
-    const auto votes = heldout_votes(input_.windows, noise->noise.noise, with, without, input_.y,
-                                     input_.bench_rows);
-    std::size_t worst = 0;
-    for (std::size_t i = 0; i < votes.size(); ++i) {
-      found()[i].heldout = votes[i];
-      if (i > 0 && (worst == 0 || votes[i].gain < votes[worst].gain)) worst = i;
+    for (Found& f : found()) f.heldout = vote_on(f, noise->noise.noise);
+    for (std::size_t i = found().size(); i-- > 0;) {
+      Found& f = found()[i];
+      f.refusal = why_refused(f);
+      if (f.refusal == Refusal::kNone) continue;
+      refused_.push_back(f.candidate);
+      result_.refused.push_back(f);
+      found().erase(found().begin() + static_cast<std::ptrdiff_t>(i));
+      return false;
     }
-    if (worst == 0 || votes[worst].folds == 0 || votes[worst].gain > 0.0) return true;
-    found().erase(found().begin() + static_cast<std::ptrdiff_t>(worst));
-    return false;
+    return true;
+  }
+
+  HeldoutVote vote_on(const Found& f, const NoiseCoefficients& noise) const {
+    const Candidate& candidate = input_.tried.candidates[f.candidate];
+    const MatrixXd core = core_of(f, candidate), others = base_with(input_, found(), &f);
+    const Index starts = core.cols() - candidate.own * (candidate.parameter ? 2 : 1);
+    const auto votes =
+        heldout_votes(input_.windows, noise, full_rank(joined(others, core)),
+                      {full_rank(joined(others, core.middleCols(candidate.own, starts)))}, input_.y,
+                      input_.bench_rows);
+    return votes.empty() ? HeldoutVote{} : votes.front();
+  }
+
+  Refusal why_refused(const Found& f) const {
+    const HeldoutVote& vote = f.heldout;
+    if (f.inner_at_edge) return Refusal::kAtEdge;
+    if (!stands(f)) return Refusal::kNotDistinguished;
+    const bool better = 2 * vote.better > vote.folds && vote.gain > kLeastGain;
+    return vote.folds == 0 || better ? Refusal::kNone : Refusal::kNotPredicting;
+  }
+
+  /// A coefficient of the effect is larger than its expanded uncertainty, all the others in the
+  /// model and its inner parameter free.
+  bool stands(const Found& f) const {
+    const Candidate& candidate = input_.tried.candidates[f.candidate];
+    const MatrixXd x = joined(core_of(f, candidate), base_with(input_, found(), &f));
+    const auto solved = gls(input_.shapes, x, input_.y);
+    if (!solved) return true;  // too few rows to tell
+    bool known = false;
+    for (Index i = 0; i < candidate.own; ++i) {
+      const double variance = solved->covariance(i, i);
+      if (!std::isfinite(variance)) continue;
+      known = true;
+      if (std::abs(solved->beta[i]) > solved->coverage_factor * std::sqrt(variance)) return true;
+    }
+    return !known;
   }
 
   void find_rivals(Found& f, Stage& stage) {
@@ -222,6 +290,7 @@ class Search {
       if (c == own || is_found(static_cast<std::size_t>(c)) || lag > kHopeless) continue;
       // Another form of it that contains it, and would lead if it were needed.
       if (stage.candidate(c).extends == f.effect) continue;
+      if (!stage.stands(c)) continue;
       near.emplace_back(lag, c);
     }
     std::sort(near.begin(), near.end());
@@ -247,7 +316,7 @@ class Search {
   /// that the effect is not the truth.
   void face_shadows(Found& f, Stage& stage) {
     const auto own = static_cast<Index>(f.candidate);
-    std::vector<Index> shadows = stage.shadows();
+    std::vector<Index> shadows = with_refused(stage, own);
     // That one jump is not two was settled step by step, where the jump's place is exact.
     if (stage.candidate(own).instant()) {
       std::erase_if(shadows, [&](Index c) { return stage.candidate(c).pulse; });
@@ -282,6 +351,7 @@ class Search {
   const SearchInput& input_;
   const SearchOptions& options_;
   SearchResult result_;
+  std::vector<std::size_t> refused_;
   std::unique_ptr<Stage> bare_, other_;
 };
 

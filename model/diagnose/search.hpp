@@ -21,6 +21,14 @@ struct Rival {
   double probability = 0.0;
 };
 
+/// Why an effect that leads cannot be named.
+enum class Refusal {
+  kNone,
+  kAtEdge,            ///< its inner parameter is not identified
+  kNotDistinguished,  ///< no coefficient is larger than its expanded uncertainty
+  kNotPredicting,     ///< rows that took no part in the fit are not predicted better
+};
+
 /// An effect that the data warrant.
 struct Found {
   std::size_t candidate = 0;  ///< in the library
@@ -37,6 +45,7 @@ struct Found {
   bool shape_leads = false;   ///< it even does better
   bool inner_at_edge = false;
   HeldoutVote heldout;  ///< with it against without it, all others in the model
+  Refusal refusal = Refusal::kNone;
 };
 
 /// What the data say of an effect that was not found.
@@ -48,9 +57,11 @@ struct Bound {
 
 struct SearchResult {
   std::vector<Found> found;       ///< in the order found
+  std::vector<Found> refused;     ///< what led, and could not be named
   std::vector<double> p_of_step;  ///< global p-value of each step, the refused last one included
-  /// A shape from outside the catalogue that explains the data better than any effect, to a degree
-  /// that the effect's own world could not produce; empty when there is none.
+  /// A shape from outside the catalogue, or an effect that was refused, that explains the data
+  /// better than any other effect, to a degree that the effect's own world could not produce; empty
+  /// when there is none.
   std::string outside_shape;
   double p_outside = 1.0;
   std::vector<Bound> bounds;
@@ -74,6 +85,7 @@ struct SearchOptions {
   double outside_level = 0.005;  ///< of a shape from outside where no effect is left to be found
   std::size_t most_effects = 5;
   std::uint64_t seed = 20260101;
+  std::vector<std::size_t> refused;  ///< candidates that are not to be named
 };
 
 /// The model needs this many rows beyond its terms, or nothing can be said of noise or structure.

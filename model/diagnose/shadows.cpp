@@ -11,11 +11,15 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kKinks = 5;              // places of a kink inside a variable's range
+constexpr int kKinks = 11;             // places of a kink inside a variable's range
 constexpr double kLongestPulse = 0.5;  // of the run
 constexpr Index kShortRun = 80;
 constexpr double kRowsPerWave = 4.0, kWaveRatio = 1.12;
 constexpr double kCreepSeconds = 300.0;
+constexpr double kNarrowestBell = 1.5, kBellRatio = 1.5;  // rows, of the standard deviation
+constexpr double kMostBells = 120.0;                      // of one width
+constexpr double kRowsPerSquare = 6.0, kSquareRatio = 1.08;
+constexpr int kSquarePhases = 8;  // of half a period
 
 void add_field_shadows(LibraryBuilder& builder, const MovingSignal& h,
                        const std::optional<MovingSignal>& rate) {
@@ -79,6 +83,44 @@ void add_pulses(LibraryBuilder& builder) {
   builder.add(std::move(pulse));
 }
 
+/// A disturbance that swells and fades: bells from a few rows to half of the run, so close that one
+/// between two of them is nearly both.
+void add_bells(LibraryBuilder& builder) {
+  const Signals& signals = builder.signals();
+  Candidate bell{.name = "a bell-shaped pulse in time", .pulse = true};
+  for (const Signals::RunRange& run : signals.runs()) {
+    const auto rows = static_cast<double>(run.end - run.begin);
+    const Eigen::ArrayXd row =
+        Eigen::ArrayXd::LinSpaced(static_cast<Index>(run.end - run.begin), 0.0, rows - 1.0);
+    const double narrowest = std::max(kNarrowestBell, rows / kMostBells);
+    for (double half = narrowest; half <= rows / 8.0; half *= kBellRatio) {
+      for (double at = 0.0; at < rows; at += half) {
+        VectorXd column = VectorXd::Zero(static_cast<Index>(signals.rows()));
+        column.segment(static_cast<Index>(run.begin), row.size()) =
+            (-0.5 * ((row - at) / half).square()).exp();
+        builder.add_block(bell, builder.averaged(column), at);
+      }
+    }
+  }
+  builder.add(std::move(bell));
+}
+
+/// On and off in equal parts: a compressor, a fan, a neighbour's machine.
+void add_square_waves(LibraryBuilder& builder, const MovingSignal& time) {
+  Candidate wave{.name = "a square wave in time"};
+  const double most = static_cast<double>(builder.source().table.rows()) / kRowsPerSquare;
+  for (double periods = 1.5; periods < most; periods *= kSquareRatio) {
+    for (int step = 0; step < kSquarePhases; ++step) {
+      const double phase = M_PI * step / kSquarePhases;
+      builder.add_block(
+          wave,
+          builder.averaged((M_PI * periods * time.scaled.array() + phase).sin().sign().matrix()),
+          periods);
+    }
+  }
+  builder.add(std::move(wave));
+}
+
 /// Something periodic, an air conditioner say; and what creeps towards rest more slowly than any
 /// exponential does.
 void add_time_shadows(LibraryBuilder& builder, const MovingSignal& time) {
@@ -95,7 +137,9 @@ void add_time_shadows(LibraryBuilder& builder, const MovingSignal& time) {
   builder.add_shadow("root of time", time.value.cwiseMax(0.0).cwiseSqrt());
   builder.add_shadow("logarithm of time",
                      (1.0 + time.value.array().max(0.0) / kCreepSeconds).log().matrix());
+  add_square_waves(builder, time);
   add_pulses(builder);
+  add_bells(builder);
 }
 
 }  // namespace

@@ -146,13 +146,22 @@ double usual_duration(const Signals& signals) {
   return std::max(*middle, 1.0);
 }
 
+/// The same columns with those of the memory's beginnings after them.
+Shape with_starts(Shape shape, const Effect& effect, const Signals& signals) {
+  return [shape = std::move(shape), &effect, &signals](double inner) {
+    const MatrixXd own = shape(inner);
+    const MatrixXd starts = effect.starts(signals, std::vector{inner});
+    MatrixXd out(own.rows(), own.cols() + starts.cols());
+    out << own, starts;
+    return out;
+  };
+}
+
 VectorXd field(const Signals& signals, std::string_view effect) {
   return signals.signal(std::string("field_") + effect.back() + "_ut") / kFieldUnitUt;
 }
 
-}  // namespace
-
-std::vector<Shape> shapes_of(const Effect& effect, const Signals& signals) {
+std::vector<Shape> shapes_at_rest(const Effect& effect, const Signals& signals) {
   const auto own = [&effect](const Signals& from, double inner) {
     const std::vector<double> parameters(effect.info().parameters.empty() ? 0 : 1, inner);
     return effect.regressor(from, parameters);
@@ -185,6 +194,15 @@ std::vector<Shape> shapes_of(const Effect& effect, const Signals& signals) {
       });
     }
   }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Shape> shapes_of(const Effect& effect, const Signals& signals) {
+  std::vector<Shape> out = shapes_at_rest(effect, signals);
+  if (!effect.info().has_history) return out;
+  for (Shape& shape : out) shape = with_starts(std::move(shape), effect, signals);
   return out;
 }
 

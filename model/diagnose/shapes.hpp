@@ -14,7 +14,7 @@
 namespace fogbench::model {
 
 /// An effect's columns on the rows of the signals, at a value of its inner parameter (ignored where
-/// it has none).
+/// it has none), then those of how its memory began.
 using Shape = std::function<Eigen::MatrixXd(double)>;
 
 /// The catalogue's own shape first. Both arguments must outlive the shapes.

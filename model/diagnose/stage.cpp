@@ -16,6 +16,11 @@ constexpr Index kNullDrawsManyRows = 199;
 constexpr Index kManyRows = 400;
 constexpr Index kRivalDraws = 299;
 constexpr int kInstants = 16;
+// A coefficient stands beyond this many standard errors.
+constexpr double kStands = 2.0;
+// How far a memory's beginning may lie beyond what the effect's coefficient makes of its input's
+// range: before the first row the input may have been somewhat outside.
+constexpr double kBeyondRangeOfInput = 1.5;
 // exp(-3) of the likelihood: what one parameter more may gain by noise.
 constexpr double kNearlyAsWell = 6.0;
 
@@ -43,11 +48,29 @@ Index Stage::best(const std::vector<Index>& among) const {
                            [&](Index a, Index b) { return lead_[a] < lead_[b]; });
 }
 
-Index Stage::leader() const {
-  const Index first = best(effects_);
+bool Stage::stands(Index c) const {
+  const auto coefficient = detector_.coefficients(c);
+  const Index own = candidate(c).own;
+  const auto value = coefficient.value.array().abs();
+  const auto error = kStands * coefficient.standard_error.array();
+  if (!(value.head(own) > error.head(own)).any()) return false;
+  const Index starts = value.size() - own;
+  const double most = kBeyondRangeOfInput * value.head(own).maxCoeff();
+  return (value.tail(starts) - error.tail(starts) <= most).all();
+}
+
+Index Stage::leader(const std::vector<std::size_t>& refused) const {
+  std::vector<Index> allowed, standing;
+  for (const Index c : effects_) {
+    if (std::find(refused.begin(), refused.end(), static_cast<std::size_t>(c)) != refused.end())
+      continue;
+    allowed.push_back(c);
+    if (lead_[c] > 0.0 && stands(c)) standing.push_back(c);
+  }
+  const Index first = best(standing.empty() ? allowed : standing);
   const bool edge = at_edge(first);
   std::vector<Index> simpler;
-  for (const Index c : effects_) {
+  for (const Index c : standing) {
     const bool its_limit =
         edge ? !candidate(c).parameter : candidate(c).name == candidate(first).extends;
     if (its_limit && lead_[first] - lead_[c] < kNearlyAsWell) simpler.push_back(c);
@@ -127,7 +150,9 @@ std::vector<Bound> Stage::bounds() const {
   std::vector<Bound> out;
   for (const Index c : effects_) {
     const auto coefficient = detector_.coefficients(c);
-    const VectorXd most = coefficient.value.cwiseAbs() + kTwoSided95 * coefficient.standard_error;
+    const Index own = candidate(c).own;
+    const VectorXd most =
+        coefficient.value.head(own).cwiseAbs() + kTwoSided95 * coefficient.standard_error.head(own);
     out.push_back({candidate(c).name, most.maxCoeff(),
                    candidate(c).units.empty() ? "" : candidate(c).units.front()});
   }

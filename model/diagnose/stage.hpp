@@ -27,10 +27,14 @@ class Stage {
   const Eigen::VectorXd& lead() const { return lead_; }
   /// The one of `among` that leads; precondition: not empty.
   Eigen::Index best(const std::vector<Eigen::Index>& among) const;
-  /// The effect to name: the one that leads, unless it does so only in the limit where it is a
-  /// simpler one that does nearly as well (a lag of next to nothing, a saturation that does not
-  /// bend). Precondition: there are effects.
-  Eigen::Index leader() const;
+  /// The effect to name: the one that leads among those that stand, unless it does so only in the
+  /// limit where it is a simpler one that does nearly as well (a lag of next to nothing, a
+  /// saturation that does not bend). Those refused are passed over. Precondition: not all effects
+  /// are refused.
+  Eigen::Index leader(const std::vector<std::size_t>& refused) const;
+  /// The data show the effect itself, and not only how its memory may have begun: a coefficient of
+  /// its own is larger than its expanded uncertainty, and no beginning larger than it allows.
+  bool stands(Eigen::Index c) const;
   /// Global p-value of the lead among all effects, or among all shadows.
   double p_value(Eigen::Index c) const {
     return calibration_.p_value(lead_[c], candidate(c).shadow() ? shadows_ : effects_);

@@ -11,6 +11,12 @@
 namespace fogbench::model {
 namespace {
 
+std::vector<std::string> names_found(const Diagnosis& d) {
+  std::vector<std::string> names;
+  for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
+  return names;
+}
+
 std::string verdict_sentence(const Diagnosis& d) {
   switch (d.verdict) {
     case Verdict::kNothingMissing:
@@ -25,18 +31,26 @@ std::string verdict_sentence(const Diagnosis& d) {
           "Nothing is missing that these data can show ({}): what is left, {:.3g} "
           "deg/h RMS, is noise.",
           probability_text(d.p_adequate), d.before.fit.rms);
-    case Verdict::kMissingEffect: {
-      std::vector<std::string> names;
-      for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
-      return fmt::format("Missing: {} ({}).", fmt::join(names, ", "),
+    case Verdict::kMissingEffect:
+      return fmt::format("Missing: {} ({}).", fmt::join(names_found(d), ", "),
                          probability_text(d.p_adequate));
-    }
     case Verdict::kAmbiguous:
       return fmt::format(
           "Something is missing ({}), and these data cannot say which of several "
           "effects it is.",
           probability_text(d.p_adequate));
     case Verdict::kUnexplained:
+      if (d.far_from_floor) {
+        return fmt::format(
+            "Found: {} ({}), but that is not all: rows left out are still missed by {:.3g} deg/h "
+            "RMS, where noise alone leaves {:.3g}{}.",
+            fmt::join(names_found(d), ", "), probability_text(d.p_adequate),
+            d.missing.back().heldout_rms_after, d.noise_floor,
+            d.unexplained.depends_on.empty()
+                ? std::string()
+                : fmt::format("; what is left depends on {}",
+                              fmt::join(d.unexplained.depends_on, ", ")));
+      }
       return fmt::format(
           "Something is left that no effect of the catalogue explains ({}){}.",
           probability_text(d.unexplained.p_value),
@@ -63,13 +77,8 @@ std::string effect_sentence(const MissingEffect& m) {
                       probability_text(m.found.p_value), m.rms_after);
   const HeldoutVote& vote = m.found.heldout;
   if (vote.folds > 0) {
-    line += vote.gain > 0.0
-                ? fmt::format("; {} of {} held-out parts are predicted better with it", vote.better,
-                              vote.folds)
-                : "; held-out parts are not predicted better with it, so take it with caution";
-  }
-  if (m.found.inner_at_edge) {
-    line += "; its inner parameter lies on the edge of the range and is not identified";
+    line += fmt::format("; {} of {} held-out parts are predicted better with it", vote.better,
+                        vote.folds);
   }
   if (!m.found.more.empty()) {
     line += "; one value of its inner parameter does not suffice, its shape bends";
@@ -95,6 +104,25 @@ std::string formula_sentence(const Diagnosis& d) {
       "deg/h, beside a noise floor of {:.3g}.",
       shape, u.beside_found ? fmt::format(" beside {}", fmt::join(names, ", ")) : std::string(),
       u.suggestion, u.heldout_rms, d.noise_floor);
+}
+
+std::string refusal_sentence(const Found& refused) {
+  switch (refused.refusal) {
+    case Refusal::kAtEdge:
+      return fmt::format(
+          "{} is not named: its inner parameter runs to the end of its range, these "
+          "data do not identify it.",
+          refused.effect);
+    case Refusal::kNotDistinguished:
+      return fmt::format("{} is not named: its coefficient cannot be distinguished from zero.",
+                         refused.effect);
+    case Refusal::kNotPredicting:
+      return fmt::format("{} is not named: it does not predict held-out parts better.",
+                         refused.effect);
+    case Refusal::kNone:
+      break;
+  }
+  return {};
 }
 
 }  // namespace
@@ -128,15 +156,19 @@ std::vector<std::string> verdict_in_words(const Diagnosis& d) {
     out.push_back(
         fmt::format("What else the model misses, {} explains.", d.explained_by_thermometer));
   }
-  const std::string_view lead =
-      d.verdict == Verdict::kUnexplained ? "Nearest of the catalogue, but not enough: " : "";
+  const std::string_view lead = d.verdict == Verdict::kUnexplained && !d.far_from_floor
+                                    ? "Nearest of the catalogue, but not enough: "
+                                    : "";
   for (const MissingEffect& m : d.missing) {
     out.push_back(fmt::format("{}{}", lead, effect_sentence(m)));
   }
   for (const auto& set : d.ambiguous) {
     out.push_back(fmt::format("Cannot tell apart: {}.", fmt::join(set, ", ")));
   }
-  if (d.verdict == Verdict::kUnexplained) out.push_back(formula_sentence(d));
+  if (d.verdict == Verdict::kUnexplained) {
+    for (const Found& refused : d.refused) out.push_back(refusal_sentence(refused));
+    out.push_back(formula_sentence(d));
+  }
   if (d.walk_beyond > 0.0) {
     out.push_back(fmt::format(
         "A random walk would explain it, but one {:.0f} times what nine of ten such gyros "
