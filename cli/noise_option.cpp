@@ -11,7 +11,7 @@
 namespace fogbench::cli {
 namespace {
 
-using Kind = model::FitOptions::Noise;
+using NoiseKind = model::FitOptions::Noise;
 
 Error refused(const std::string& noise, const std::string& because,
               ErrorCode code = ErrorCode::kBadInput) {
@@ -47,9 +47,10 @@ Result<ChosenNoise> recorded(const std::string& noise, DataOptions data) {
   if (!table) return refused(noise, table.error().message);
   config::ModelFile still;
   still.terms.emplace_back().effect = "bias";
-  const auto fitted = model::fit(*table, still, {.noise = Kind::kColoured, .weight_by = {}});
+  const auto fitted = model::fit(*table, still, {.noise = NoiseKind::kColoured, .weight_by = {}});
   if (!fitted) return refused(noise, fitted.error().message);
-  return ChosenNoise{Kind::kAuto, model::NoisePrior::recorded(fitted->noise), std::move(*table)};
+  return ChosenNoise{NoiseKind::kAuto, model::NoisePrior::recorded(fitted->noise),
+                     std::move(*table)};
 }
 
 }  // namespace
@@ -62,10 +63,10 @@ void add_noise_option(CLI::App& command, std::string& noise) {
 }
 
 Result<ChosenNoise> chosen_noise(const std::string& noise, const DataOptions& data) {
-  static const std::map<std::string, Kind> kKinds{{"", Kind::kAuto},
-                                                  {"auto", Kind::kAuto},
-                                                  {"independent", Kind::kIndependent},
-                                                  {"coloured", Kind::kColoured}};
+  static const std::map<std::string, NoiseKind> kKinds{{"", NoiseKind::kAuto},
+                                                       {"auto", NoiseKind::kAuto},
+                                                       {"independent", NoiseKind::kIndependent},
+                                                       {"coloured", NoiseKind::kColoured}};
   if (const auto kind = kKinds.find(noise); kind != kKinds.end()) {
     return ChosenNoise{kind->second, {}, {}};
   }
@@ -75,7 +76,7 @@ Result<ChosenNoise> chosen_noise(const std::string& noise, const DataOptions& da
   if (!stated) return recorded(noise, data);
   const auto prior = model::NoisePrior::stated(*stated);
   if (!prior) return refused(noise, prior.error().message);
-  return ChosenNoise{Kind::kAuto, *prior, {}};
+  return ChosenNoise{NoiseKind::kAuto, *prior, {}};
 }
 
 }  // namespace fogbench::cli
