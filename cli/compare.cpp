@@ -185,7 +185,7 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
   }
   auto table = load_table(options.data);
   if (!table) return table.error();
-  for (const std::string& note : model::mend_stamps(*table, model->observable)) print_note(note);
+  const std::vector<std::string> notes = model::mend_stamps(*table, model->observable);
   const auto noise = chosen_noise(options.noise, options.data);
   if (!noise) return noise.error();
   const auto result = model::compare(*table, *model,
@@ -193,7 +193,8 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
                                       .weight_by = options.weight_by,
                                       .as_is = options.as_is,
                                       .prior = noise->prior});
-  if (!result) return result.error();
+  if (!result) return with_notes(result.error(), notes);
+  for (const std::string& note : notes) print_note(note);
   if (page) {
     Status written =
         page->write(model::report_html(*result, *table, *model, data_name(options.data)));

@@ -121,13 +121,14 @@ Result<ExitStatus> run_fit(const FitCommandOptions& options) {
   if (!model) return model.error();
   Result<model::Table> table = load_table(options.data);
   if (!table) return table.error();
-  for (const std::string& note : model::mend_stamps(*table, model->observable)) print_note(note);
+  const std::vector<std::string> notes = model::mend_stamps(*table, model->observable);
   const auto noise = chosen_noise(options.noise, options.data);
   if (!noise) return noise.error();
   Result<model::FitResult> result =
       model::fit(*table, *model,
                  {.noise = noise->kind, .weight_by = options.weight_by, .prior = noise->prior});
-  if (!result) return result.error();
+  if (!result) return with_notes(result.error(), notes);
+  for (const std::string& note : notes) print_note(note);
   if (Status signed_ok = sign(*result->fitted.fit, options.data); !signed_ok) {
     return signed_ok.error();
   }

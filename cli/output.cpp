@@ -83,6 +83,11 @@ void print_note(const std::string& message) {
   print_error("note: " + message);
 }
 
+Error with_notes(Error error, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) error.message += "; " + note;
+  return error;
+}
+
 bool progress_wanted() {
   return isatty(STDERR_FILENO) == 1;
 }

@@ -45,6 +45,8 @@ void print_json(const nlohmann::ordered_json& document);
 void print_error(const std::string& message);
 /// One line "fogbench: note: ..." on stderr: the result stands, but the reader should know.
 void print_note(const std::string& message);
+/// One line for an error and what was noted before it.
+Error with_notes(Error error, const std::vector<std::string>& notes);
 
 /// True when stderr is a terminal, so that a progress line may overwrite itself there.
 bool progress_wanted();

@@ -118,7 +118,10 @@ std::vector<BadRow> find_bad_rows(const Windows& windows, const NoiseShapes& sha
   if (y.size() > kMostRowsToDoubt) return bad;
   const auto most = static_cast<std::size_t>(std::max<Index>(1, y.size() / kRowsForEachBad));
   while (const auto worst = worst_row(windows, shapes, with_pulses(columns, bad), y)) {
-    if (bad.size() == most) return {};
+    const bool beside_another = std::any_of(bad.begin(), bad.end(), [&](const BadRow& other) {
+      return std::abs(other.row - worst->row) < kWidestPulse;
+    });
+    if (bad.size() == most || beside_another) return {};
     bad.push_back(*worst);
   }
   return bad;

@@ -24,8 +24,8 @@ struct BadRow {
 };
 
 /// In the order found, worst first; empty for fewer than 20 rows beside the columns, for more than
-/// 1,000 rows, and where more than one row in 25 would have to go: then the noise has heavy tails,
-/// or something acts that is no bad reading.
+/// 1,000 rows, and where more than one row in 25 would have to go, or two that are neighbours: then
+/// the noise has heavy tails, or something acts that is no bad reading.
 std::vector<BadRow> find_bad_rows(const Windows& windows, const NoiseShapes& shapes,
                                   const Eigen::MatrixXd& columns, const Eigen::VectorXd& y);
 

@@ -18,6 +18,9 @@
 namespace fogbench::model {
 namespace {
 
+// Of what was measured: a misfit that is smaller is rounding.
+constexpr double kRounding = 1e-12;
+
 /// Regions of the residual, as sums over their rows.
 struct Cells {
   std::vector<Partition> partitions;
@@ -132,6 +135,11 @@ Result<Comparison> compare(const Table& table, const config::ModelFile& model,
       region.drift_allowed = scores.offset.size() > 0;
       if (region.drift_allowed) region.offset = scores.offset[g];
       region.p_family_wise = scores.family_wise[g];
+      const double off = region.drift_allowed ? region.offset : region.residual;
+      if (std::abs(off) <= kRounding * std::abs(region.observed)) {
+        region.z = 0.0;
+        region.p_family_wise = 1.0;
+      }
     }
   }
   std::erase_if(cells.regions, [](const Region& region) { return region.rows == 0; });

@@ -30,7 +30,8 @@ RegionScores score_regions(const NoiseShapes& shapes, const MatrixXd& x, const V
     library.candidates.back().blocks.push_back({.first = g});
   }
   const MatrixXd base = full_rank(x);
-  const Detector detector(shapes, base, library, y);
+  const WhitenedLibrary whitened(shapes, library);
+  const Detector detector(whitened, base, y);
   const Index draws = shapes.rows() > kManyWindows ? kRegionDrawsManyRows : kRegionDraws;
   const Calibration calibration(detector.lambdas(detector.draw(draws, seed)));
   const VectorXd lead = calibration.lead(detector.observed());

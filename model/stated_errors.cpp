@@ -17,7 +17,7 @@ bool states(double error) {
   return error > 0.0 && std::isfinite(error);
 }
 
-double middle_of(std::vector<double> values) {
+double median_value(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -39,14 +39,14 @@ std::vector<double> stated_logarithms(const Windows& windows) {
 
 double stated_white(const Windows& windows) {
   const std::vector<double> stated = stated_logarithms(windows);
-  return stated.empty() ? 0.0 : std::exp(0.5 * middle_of(stated));
+  return stated.empty() ? 0.0 : std::exp(0.5 * median_value(stated));
 }
 
 Eigen::VectorXd stated_white_scale(const Windows& windows) {
   Eigen::VectorXd out = Eigen::VectorXd::Ones(windows.rows());
   const std::vector<double> stated = stated_logarithms(windows);
   if (stated.size() < 2) return out;
-  const double usual = middle_of(stated);
+  const double usual = median_value(stated);
   double squares = 0.0;
   std::vector<double> steps;
   for (std::size_t i = 0; i < stated.size(); ++i) {
@@ -55,7 +55,7 @@ Eigen::VectorXd stated_white_scale(const Windows& windows) {
   }
   const double whole = squares / static_cast<double>(stated.size());
   if (whole == 0.0) return out;
-  const double step = middle_of(std::move(steps)) / kHalfOfNormal;
+  const double step = median_value(std::move(steps)) / kHalfOfNormal;
   const double chance = std::min(0.5 * step * step, kMostChance);
   const double believed = std::max(0.0, 1.0 - chance / whole);
   std::size_t next = 0;

@@ -22,7 +22,8 @@ Adequacy check_adequacy(const NoiseShapes& shapes, const Eigen::MatrixXd& base, 
                         const Library& smooth, std::uint64_t seed) {
   Adequacy out;
   if (base.rows() - base.cols() < kFewestRowsForShapes || smooth.candidates.empty()) return out;
-  const Detector detector(shapes, base, smooth, y);
+  const WhitenedLibrary whitened(shapes, smooth);
+  const Detector detector(whitened, base, y);
   const Draws draws = detector.draw(kAdequacyDraws, seed);
   const Calibration calibration(detector.lambdas_at_null_noise(draws));
   const VectorXd lead = calibration.lead(detector.observed_at_null_noise());

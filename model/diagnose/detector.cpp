@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <limits>
-#include <mutex>
 
 #include "model/diagnose/detector_view.hpp"
 
@@ -19,6 +18,8 @@ constexpr double kLeastLeft = 1e-3;
 // Shapes whose likelihood is below this fraction of the best, without and with every candidate, are
 // not kept: they cannot move any statistic.
 constexpr double kLeastShape = 1e-3;
+// What a point of a grid between those of the sample may gain, as a log-likelihood.
+constexpr double kUnsampled = 5.0;
 constexpr std::size_t kMostShapes = 32;
 constexpr double kMinusInfinity = -std::numeric_limits<double>::infinity();
 
@@ -51,69 +52,79 @@ bool orthonormalise(Eigen::Ref<MatrixXd> block, const VectorXd& lengths_before) 
 
 }  // namespace
 
-Detector::Detector(const NoiseShapes& shapes, const MatrixXd& base, const Library& library,
-                   const VectorXd& y)
-    : shapes_(shapes),
+Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const VectorXd& y)
+    : shapes_(whitened.shapes()),
       base_(base),
-      library_(library),
+      library_(whitened.library()),
       y_(y),
       nu_(static_cast<double>(base.rows() - base.cols())),
-      evidence_(nu_, shapes.anchor()) {
-  const std::size_t blocks = count_blocks(library);
-  std::vector<std::shared_ptr<View>> all(shapes.size());
-  std::vector<double> null_likelihood(shapes.size()), best_likelihood(shapes.size());
+      evidence_(nu_, shapes_.anchor()) {
+  const std::size_t blocks = count_blocks(library_);
+  std::vector<std::shared_ptr<View>> all(shapes_.size());
+  std::vector<double> null_likelihood(shapes_.size()), best_likelihood(shapes_.size());
 
-  // The library whitened under every shape would fill the memory: a shape that is hopeless beside
-  // those seen so far is hopeless for good.
-  std::mutex seen;
-  double best_null = kMinusInfinity, best_with = kMinusInfinity;
-  in_parallel(shapes.size(), [&](std::size_t k) {
+  // The best of the candidates' blocks, made orthonormal in place.
+  const auto explained = [](const View& view, MatrixXd& z, const VectorXd& lengths,
+                            const std::vector<Block>& of, std::vector<bool>* living) {
+    double most = 0.0;
+    for (const Block& b : of) {
+      auto part = z.middleCols(b.first, b.width);
+      const bool alive = orthonormalise(part, lengths.segment(b.first, b.width));
+      if (!alive) part.setZero();
+      if (living != nullptr) living->push_back(alive);
+      most = std::max(most, (part.transpose() * view.residual).squaredNorm());
+    }
+    return most;
+  };
+
+  // Most noise shapes are hopeless, with each candidate as without: a sample of the candidates
+  // tells.
+  in_parallel(shapes_.size(), [&](std::size_t k) {
     auto view = std::make_shared<View>();
     view->shape = k;
-    view->whitener = shapes.whitener(k);
+    view->whitener = shapes_.whitener(k);
     const MatrixXd wx = view->whitener->whiten(base_);
     const Eigen::HouseholderQR<MatrixXd> qr(wx);
     view->q = qr.householderQ() * MatrixXd::Identity(wx.rows(), wx.cols());
-    view->log_prior = shapes.log_prior(k) - 0.5 * view->whitener->log_determinant() -
+    view->log_prior = shapes_.log_prior(k) - 0.5 * view->whitener->log_determinant() -
                       qr.matrixQR().diagonal().cwiseAbs().array().log().sum();
     view->residual = view->project(view->whitener->whiten(y_));
     view->squares = view->residual.squaredNorm();
-
-    MatrixXd z = view->whitener->whiten(library_.columns);
+    null_likelihood[k] = view->log_prior + evidence_(view->squares);
+    MatrixXd z = whitened.sample_under(k);
     const VectorXd lengths = z.colwise().norm();
     z = view->project(std::move(z));
-    view->alive.reserve(blocks);
-    double most = 0.0;
-    for (const Candidate& c : library_.candidates) {
-      for (const Block& b : c.blocks) {
-        auto part = z.middleCols(b.first, b.width);
-        const bool alive = orthonormalise(part, lengths.segment(b.first, b.width));
-        if (!alive) part.setZero();
-        view->alive.push_back(alive);
-        most = std::max(most, (part.transpose() * view->residual).squaredNorm());
-      }
-    }
-    null_likelihood[k] = view->log_prior + evidence_(view->squares);
+    const double most = explained(*view, z, lengths, whitened.sample(), nullptr);
     best_likelihood[k] = view->log_prior + evidence_(view->squares - most);
-    {
-      const std::lock_guard lock(seen);
-      best_null = std::max(best_null, null_likelihood[k]);
-      best_with = std::max(best_with, best_likelihood[k]);
-      if (std::max(null_likelihood[k] - best_null, best_likelihood[k] - best_with) <
-          std::log(kLeastShape)) {
-        return;
-      }
-    }
-    view->u = z.cast<float>();
     all[k] = std::move(view);
   });
-
-  const double top_null = *std::max_element(null_likelihood.begin(), null_likelihood.end());
-  const double top_best = *std::max_element(best_likelihood.begin(), best_likelihood.end());
-  std::vector<std::pair<double, std::size_t>> ranked;
+  const auto merit_of = [&](std::size_t k) {
+    const double null = *std::max_element(null_likelihood.begin(), null_likelihood.end());
+    const double best = *std::max_element(best_likelihood.begin(), best_likelihood.end());
+    return std::max(null_likelihood[k] - null, best_likelihood[k] - best);
+  };
+  std::vector<std::size_t> hopeful;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const double merit = std::max(null_likelihood[k] - top_null, best_likelihood[k] - top_best);
-    if (merit > std::log(kLeastShape)) ranked.emplace_back(-merit, k);
+    if (merit_of(k) > std::log(kLeastShape) - kUnsampled) hopeful.push_back(k);
+  }
+  in_parallel(hopeful.size(), [&](std::size_t i) {
+    const std::size_t k = hopeful[i];
+    View& view = *all[k];
+    MatrixXd z = *whitened.under(k);
+    const VectorXd lengths = z.colwise().norm();
+    z = view.project(std::move(z));
+    view.alive.reserve(blocks);
+    double most = 0.0;
+    for (const Candidate& c : library_.candidates) {
+      most = std::max(most, explained(view, z, lengths, c.blocks, &view.alive));
+    }
+    best_likelihood[k] = view.log_prior + evidence_(view.squares - most);
+    view.u = z.cast<float>();
+  });
+
+  std::vector<std::pair<double, std::size_t>> ranked;
+  for (const std::size_t k : hopeful) {
+    if (merit_of(k) > std::log(kLeastShape)) ranked.emplace_back(-merit_of(k), k);
   }
   std::sort(ranked.begin(), ranked.end());
   if (ranked.size() > kMostShapes) ranked.resize(kMostShapes);

@@ -15,8 +15,7 @@
 #include <memory>
 #include <vector>
 
-#include "model/diagnose/library.hpp"
-#include "model/gls.hpp"
+#include "model/diagnose/whitened_library.hpp"
 
 namespace fogbench::model {
 
@@ -30,8 +29,7 @@ struct Draws {
 class Detector {
  public:
   /// All arguments must outlive the detector. base: rows x p, full rank.
-  Detector(const NoiseShapes& shapes, const Eigen::MatrixXd& base, const Library& library,
-           const Eigen::VectorXd& y);
+  Detector(const WhitenedLibrary& whitened, const Eigen::MatrixXd& base, const Eigen::VectorXd& y);
 
   Eigen::Index candidates() const { return static_cast<Eigen::Index>(library_.candidates.size()); }
   /// Lambda of each candidate on the data; -1 where it is not testable.

@@ -30,6 +30,8 @@ using Eigen::VectorXd;
 // What was found explains the table when rows left out are missed by no more than this many noise
 // floors: the rest of a fit that was made without them, and chance, take less.
 constexpr double kFarFromFloor = 1.6;
+// An effect that is there makes predictions of rows left out no worse than this, chance included.
+constexpr double kWorse = 1.05;
 
 std::string name_of_parameter(const Candidate& candidate) {
   return candidate.parameter_name.empty() ? std::string(candidate.parameter->name)
@@ -60,19 +62,6 @@ Table without_readings(Table table, const std::string& observable,
   for (const LeftOut& row : rows) values[row.row] = kMissing;
   table.set_column(observable, std::move(values));
   return table;
-}
-
-/// Inside its range, by more than a fiftieth at either end.
-bool within(const InnerParameter& range, const Estimate& e) {
-  constexpr double kEdge = 0.02;
-  if (!std::isfinite(e.value)) return false;
-  if (range.logarithmic && range.minimum > 0.0) {
-    const double share =
-        std::log(e.value / range.minimum) / std::log(range.maximum / range.minimum);
-    return share > kEdge && share < 1.0 - kEdge;
-  }
-  const double share = (e.value - range.minimum) / (range.maximum - range.minimum);
-  return share > kEdge && share < 1.0 - kEdge;
 }
 
 /// The work of one diagnosis, part by part.
@@ -123,29 +112,22 @@ class Work {
     if (!library) return library.error();
 
     tell("searching for what is missing", 0.3);
-    const SearchInput input_of_search{*library,      *shapes, table_.windows(), table_.bench_rows(),
+    const WhitenedLibrary whitened(*shapes, *library);
+    const SearchInput input_of_search{whitened, table_.windows(), table_.bench_rows(),
                                       base->columns, base->y};
     SearchOptions search_options;
     search_options.first_level = kShareOfEffects * options_.false_alarm_rate;
     search_options.outside_level = kShareOfShapes * options_.false_alarm_rate;
     search_options.seed = options_.seed;
+    search_options.refit = [&](const std::vector<Found>& named) {
+      climb_ladder(*library, named);
+      return not_identified(*library);
+    };
     SearchResult found = search(input_of_search, search_options);
+    take_over(found);
     d_.not_testable = library->not_testable;
-    d_.bounds = found.bounds;
     d_.judged = !found.p_of_step.empty() || found.p_outside < 1.0;
     if (!found.p_of_step.empty()) d_.p_adequate = found.p_of_step.front();
-
-    tell("refitting with what was found", 0.8);
-    climb_ladder(*library, found.found);
-    // The refit leaves the grid: what it does not identify is no name, and the search goes on.
-    while (const auto lost = not_identified(*library, found.found)) {
-      search_options.refused.push_back(lost->candidate);
-      std::vector<Found> refused = std::move(found.refused);
-      refused.push_back(*lost);
-      found = search(input_of_search, search_options);
-      found.refused.insert(found.refused.begin(), refused.begin(), refused.end());
-      climb_ladder(*library, found.found);
-    }
     doubt_the_thermometer(found);
 
     tell("looking for what has no name", 0.9);
@@ -157,7 +139,7 @@ class Work {
         noise && (d_.judged || d_.missing.empty())) {
       const NoiseCoefficients& left = noise->noise.noise;
       d_.floor = noise_floor(*shapes, noise->noise, last, table_.bench_rows(), options_.seed);
-      d_.noise_floor = d_.floor.beside(d_.after.rms);
+      d_.noise_floor = d_.floor.beside(std::fmin(d_.after.rms, d_.ladder.back().rms));
       if (d_.table.has("time_s")) d_.noise = left;
     }
     const Library smooth = make_smooth_library(source);
@@ -203,27 +185,23 @@ class Work {
     return heldout_rms(table_.bench_with_history(), table_.windows(), fit.fitted, fit.noise.noise);
   }
 
-  /// The last found effect whose refit leaves no coefficient beyond its expanded uncertainty, or
-  /// takes its inner parameter to the end of its range or beyond; nothing: there is none.
-  std::optional<Found> not_identified(const Library& library,
-                                      const std::vector<Found>& found) const {
-    for (std::size_t i = found.size(); i-- > 0;) {
+  /// The last found effect of which the refit leaves no coefficient beyond its expanded
+  /// uncertainty, or whose rung of the ladder predicts left-out rows worse than the one below.
+  std::optional<Refused> not_identified(const Library& library) const {
+    for (std::size_t i = d_.missing.size(); i-- > 0;) {
       const MissingEffect& missing = d_.missing[i];
-      const Candidate& candidate = library.candidates[found[i].candidate];
-      Found lost = found[i];
       bool stands = false, known = false;
       for (const Estimate& e : missing.estimates) {
-        const double expanded = e.coverage_factor * e.standard_error;
-        if (e.name != missing.inner_name) {
-          known = known || std::isfinite(expanded);
-          stands = stands || std::abs(e.value) > expanded;
-        } else if (candidate.parameter && !candidate.instant() &&
-                   !within(*candidate.parameter, e)) {
-          lost.refusal = Refusal::kAtEdge;
-        }
+        if (e.name == missing.inner_name || !std::isfinite(e.standard_error)) continue;
+        known = true;
+        stands = stands || std::abs(e.value) > e.coverage_factor * e.standard_error;
       }
-      if (known && !stands) lost.refusal = Refusal::kNotDistinguished;
-      if (lost.refusal != Refusal::kNone) return lost;
+      if (known && !stands) return Refused{i, Refusal::kNotDistinguished};
+      // With a slow effect the wandering of the noise makes that a matter of chance.
+      const bool slow = library.candidates[missing.found.candidate].slow;
+      if (!slow && missing.heldout_rms_after > kWorse * d_.ladder[i].heldout_rms) {
+        return Refused{i, Refusal::kNotPredicting};
+      }
     }
     return {};
   }
@@ -233,7 +211,6 @@ class Work {
   void climb_ladder(const Library& library, const std::vector<Found>& found) {
     d_.ladder.clear();
     d_.missing.clear();
-    d_.ambiguous.clear();
     fits_.clear();
     d_.heldout_rms = heldout(d_.before.fit);
     double rms = least_squares_rms(d_.table, d_.before.fit.fitted);
@@ -243,7 +220,10 @@ class Work {
     std::vector<Found> so_far;
     for (const Found& f : found) {
       so_far.push_back(f);
-      MissingEffect missing{.found = f, .estimates = {}};
+      MissingEffect missing{.found = f,
+                            .estimates = {},
+                            .rms_after = rms,
+                            .heldout_rms_after = d_.ladder.back().heldout_rms};
       const Candidate& candidate = library.candidates[f.candidate];
       const auto refit =
           fit(table_.bench_with_history(), extended_by(model_, library, so_far), fit_options());
@@ -257,26 +237,64 @@ class Work {
         }
         missing.rms_after = rms;
         missing.heldout_rms_after = heldout(*refit);
-        d_.ladder.push_back({f.effect, missing.rms_after, missing.heldout_rms_after});
       }
+      d_.ladder.push_back({f.effect, missing.rms_after, missing.heldout_rms_after});
       for (const config::ModelTerm& term : candidate.terms) missing.terms.push_back(term.effect);
       if (candidate.parameter) {
         missing.inner_name = fmt::format("{}.{}", f.effect, name_of_parameter(candidate));
       }
+      d_.missing.push_back(std::move(missing));
+    }
+    d_.noise = d_.after.noise.noise;
+    for (MissingEffect& missing : d_.missing) estimate(missing);
+  }
+
+  /// Coefficients and inner parameter of the last refit. Where the two are one number in these data
+  /// (a saturation that hardly bends), the coefficients are those at this value of the parameter.
+  void estimate(MissingEffect& missing) const {
+    const std::vector<Estimate>& all = d_.after.estimates;
+    std::vector<Index> at;  // in the covariance, which holds what is free
+    Index free = 0, inner = -1;
+    bool stands = false;
+    for (const Estimate& e : all) {
+      const bool its = std::any_of(
+          missing.terms.begin(), missing.terms.end(),
+          [&](const std::string& id) { return e.name == id || e.name.starts_with(id + "."); });
+      if (its) {
+        missing.estimates.push_back(e);
+        at.push_back(e.held ? -1 : free);
+        const bool is_inner = e.name == missing.inner_name;
+        if (is_inner) inner = at.back();
+        stands = stands || (!is_inner && std::abs(e.value) > e.coverage_factor * e.standard_error);
+      }
+      free += e.held ? 0 : 1;
+    }
+    const MatrixXd& covariance = d_.after.covariance;
+    if (stands || inner < 0 || inner >= covariance.rows()) return;
+    const double variance = covariance(inner, inner);
+    if (!(variance > 0.0)) return;
+    missing.inner_open = true;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (at[i] < 0) continue;
+      const double shared = covariance(at[i], inner);
+      missing.estimates[i].standard_error =
+          at[i] == inner
+              ? kMissing
+              : std::sqrt(std::max(0.0, covariance(at[i], at[i]) - shared * shared / variance));
+    }
+  }
+
+  /// What the search says beside what is in the ladder already.
+  void take_over(const SearchResult& found) {
+    d_.bounds = found.bounds;
+    d_.refused = found.refused;
+    for (std::size_t i = 0; i < d_.missing.size(); ++i) {
+      const Found& f = found.found[i];
+      d_.missing[i].found = f;
       std::vector<std::string> set{f.effect};
       for (const Rival& r : f.rivals) set.push_back(r.effect);
       if (f.shape_leads) set.push_back(fmt::format("another effect shaped like {}", f.or_shape));
       if (set.size() > 1) d_.ambiguous.push_back(std::move(set));
-      d_.missing.push_back(std::move(missing));
-    }
-    d_.noise = d_.after.noise.noise;
-    for (MissingEffect& missing : d_.missing) {
-      for (const Estimate& e : d_.after.estimates) {
-        const bool its = std::any_of(
-            missing.terms.begin(), missing.terms.end(),
-            [&](const std::string& id) { return e.name == id || e.name.starts_with(id + "."); });
-        if (its) missing.estimates.push_back(e);
-      }
     }
   }
 
@@ -386,7 +404,6 @@ class Work {
       d_.explained_by_thermometer =
           fmt::format("the thermometer's resolution of {:g} degC", table_.resolution_c());
     }
-    d_.refused = found.refused;
     d_.far_from_floor = !d_.missing.empty() && !within_steps_ && std::isfinite(d_.noise_floor) &&
                         d_.missing.back().heldout_rms_after > kFarFromFloor * d_.noise_floor;
     if (uneven) d_.unexplained.depends_on = adequacy.depends_on;
@@ -408,7 +425,7 @@ class Work {
   /// would explain everything, the slow effects and the walk are one set, and a static record
   /// decides.
   void doubt_walk(const SearchInput& input, const Library& smooth) {
-    const auto noise = gls(input.shapes, input.base, input.y);
+    const auto noise = gls(input.shapes(), input.base, input.y);
     if (!noise || !d_.judged || prior_.walk_is_noise(noise->noise) > options_.false_alarm_rate) {
       return;
     }
@@ -417,8 +434,8 @@ class Work {
     const auto shapes = NoiseShapes::make(input.windows, wide);
     if (!shapes) return;
     if (d_.verdict != Verdict::kNothingMissing) {
-      const SearchInput beyond{input.tried,      *shapes,    input.windows,
-                               input.bench_rows, input.base, input.y};
+      const WhitenedLibrary whitened(*shapes, input.tried());
+      const SearchInput beyond{whitened, input.windows, input.bench_rows, input.base, input.y};
       const FirstLook look = look_at(beyond, smooth, options_.seed);
       const double left =
           std::min(look.p_effects / kShareOfEffects,
@@ -431,7 +448,7 @@ class Work {
     d_.walk_beyond = its.rate_random_walk_deg_per_h_per_sqrt_h /
                      (its.angle_random_walk_deg_per_sqrt_h * prior_.k_over_n.usual_most());
     d_.p_adequate = std::min(d_.p_adequate, prior_.walk_is_noise(noise->noise));
-    call_it_slow(input.tried);
+    call_it_slow(input.tried());
   }
 
   /// The set of the slow effects, those that were found or else all, and the random walk.

@@ -36,6 +36,9 @@ struct MissingEffect {
       terms;               ///< what it adds to the model: itself, but for changes between runs
   std::string inner_name;  ///< of the estimate that is its inner parameter; empty: none
   std::vector<Estimate> estimates;  ///< its coefficients and inner parameters, after the last refit
+  /// The data do not say what its inner parameter is (standard error NaN); the coefficients'
+  /// uncertainties are those at the value that fits best.
+  bool inner_open = false;
   double rms_after = 0.0;
   double heldout_rms_after = 0.0;
 };

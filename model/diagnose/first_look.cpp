@@ -23,14 +23,14 @@ FirstLook look_at(const SearchInput& input, const Library& smooth, std::uint64_t
       out.looks_like = stage.candidate(best).name;
     }
   }
-  const Adequacy adequacy = check_adequacy(input.shapes, input.base, input.y, smooth, seed);
+  const Adequacy adequacy = check_adequacy(input.shapes(), input.base, input.y, smooth, seed);
   out.p_smooth = adequacy.p_value;
   const double others = std::min(out.p_effects / kShareOfEffects, out.p_shapes / kShareOfShapes);
   if (out.p_smooth / kShareOfSmooth < others && !adequacy.depends_on.empty()) {
     out.looks_like = "something that depends on " + adequacy.depends_on.front();
   }
-  if (const auto noise = gls(input.shapes, input.base, input.y)) {
-    out.p_walk = input.shapes.prior().walk_is_noise(noise->noise);
+  if (const auto noise = gls(input.shapes(), input.base, input.y)) {
+    out.p_walk = input.shapes().prior().walk_is_noise(noise->noise);
     if (out.p_walk < std::min(others, out.p_smooth / kShareOfSmooth)) {
       out.looks_like = "a slow effect, or a random walk far beyond that of such gyros";
     }
@@ -51,8 +51,9 @@ Result<FirstLook> first_look(const Table& table, const config::ModelFile& fitted
   const LibrarySource source{*working, signals, fitted, none};
   const auto library = make_library(source);
   if (!library) return library.error();
-  const SearchInput input{*library,      *shapes, working->windows(), working->bench_rows(),
-                          base->columns, base->y};
+  const WhitenedLibrary whitened(*shapes, *library);
+  const SearchInput input{whitened, working->windows(), working->bench_rows(), base->columns,
+                          base->y};
   return look_at(input, make_smooth_library(source), SearchOptions{}.seed);
 }
 

@@ -22,13 +22,19 @@ constexpr std::size_t kFolds = 8;
 // an extrapolation.
 constexpr std::size_t kBlocksPerFold = 3;
 
-// Of a left-out direction, in units of its noise: what the model's columns leave of it.
-constexpr double kUnpredictable = 1e-6;
+// A left-out direction of which the other rows hold less than this share of what is known is not
+// predicted by them: a warm-up's first rows.
+constexpr double kUnpredictable = 0.1;
+// A row of which the others tell less than it does itself is no test of them.
+constexpr double kLessThanItself = 1.0;
+// Twice a log-likelihood: a part in which a column is next to nothing has no opinion on it.
+constexpr double kNoDifference = 0.25;
 
 /// Of the rows that have a measurement.
 struct System {
   MatrixXd x;
   VectorXd y;
+  Index starts = 0;  ///< the last of the columns: how memories began
 };
 
 std::optional<System> system_of(const Signals& signals, config::ModelFile model) {
@@ -44,6 +50,9 @@ std::optional<System> system_of(const Signals& signals, config::ModelFile model)
     inner[i] = design->parameters()[static_cast<std::size_t>(i)].start.value_or(1.0);
   }
   System out;
+  for (const Index column : design->free_columns()) {
+    out.starts += design->columns()[static_cast<std::size_t>(column)].start ? 1 : 0;
+  }
   const auto n = static_cast<Index>(signals.rows());
   design->visit(inner, false, signals.signal(model.observable),
                 [&](std::size_t begin, Eigen::Ref<MatrixXd> rows) {
@@ -96,28 +105,59 @@ std::vector<Fold> folds_of(const std::vector<Index>& rows) {
       (block % folds == fold ? out[fold].left : out[fold].kept).push_back(rows[i]);
     }
   }
+  // Of few rows not every fold gets one.
+  std::erase_if(out, [](const Fold& fold) { return fold.left.empty(); });
   return out;
 }
 
-/// Errors of the left-out rows' predictions, weighted least squares over the kept ones; nothing
-/// when the kept rows do not determine all coefficients.
-std::optional<VectorXd> predicted_badly(const MatrixXd& columns, const VectorXd& y,
-                                        const Fold& fold, const Whitener* whitener, Index rank) {
-  const VectorXd truth = y(fold.left);
-  if (columns.cols() == 0) return truth;
-  MatrixXd x = columns(fold.kept, Eigen::all);
-  VectorXd seen = y(fold.kept);
-  if (whitener != nullptr) {
-    x = whitener->whiten(x);
-    seen = whitener->whiten(seen);
-  }
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(x);
+/// Coefficients of least squares, whatever the columns' lengths and dependences.
+VectorXd solve(const MatrixXd& x, const VectorXd& y) {
+  if (x.cols() == 0) return VectorXd(0);
+  VectorXd lengths = x.colwise().stableNorm();
+  for (double& length : lengths) length = length > 0.0 ? length : 1.0;
+  const MatrixXd scaled = x * lengths.cwiseInverse().asDiagonal();
+  return Eigen::CompleteOrthogonalDecomposition<MatrixXd>(scaled).solve(y).cwiseQuotient(lengths);
+}
+
+/// The rows' weights: those of the white noise alone. Under a walk the weighted bias is that of a
+/// few rows, and the wandering of all others would count as misfit.
+std::unique_ptr<Whitener> weights_of(const Windows& windows, const NoiseCoefficients& noise) {
+  if (!(noise.angle_random_walk_deg_per_sqrt_h > 0.0)) return nullptr;
+  auto made = make_whitener(
+      windows, {.angle_random_walk_deg_per_sqrt_h = noise.angle_random_walk_deg_per_sqrt_h});
+  return made ? std::move(*made) : nullptr;
+}
+
+/// Errors of the left-out rows that the kept ones predict, in the observable's unit, by least
+/// squares on rows that have been multiplied by their `weight`; nothing when the kept ones do not
+/// determine all coefficients.
+std::optional<VectorXd> predicted_badly(const MatrixXd& x, const VectorXd& y,
+                                        const VectorXd& weight, const Fold& fold, Index rank) {
+  const VectorXd unit = weight(fold.left).cwiseInverse();
+  if (x.cols() == 0) return y(fold.left).cwiseProduct(unit);
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(x(fold.kept, Eigen::all));
   if (qr.rank() < rank) return std::nullopt;  // the block held something that nothing else shows
-  return truth - columns(fold.left, Eigen::all) * qr.solve(seen);
+  const MatrixXd left = x(fold.left, Eigen::all);
+  const VectorXd errors = (y(fold.left) - left * qr.solve(y(fold.kept))).cwiseProduct(unit);
+  // Of the predictions' variance, in units of a row's own.
+  const Index p = qr.rank();
+  const MatrixXd ordered = (left * qr.colsPermutation()).leftCols(p);
+  const VectorXd uncertain = qr.matrixQR()
+                                 .topLeftCorner(p, p)
+                                 .template triangularView<Eigen::Upper>()
+                                 .transpose()
+                                 .solve(ordered.transpose())
+                                 .colwise()
+                                 .squaredNorm();
+  std::vector<Index> told;
+  for (Index i = 0; i < errors.size(); ++i) {
+    if (uncertain[i] < kLessThanItself) told.push_back(i);
+  }
+  return errors(told);
 }
 
 /// How well rows that were left out are predicted.
-struct LeftOut {
+struct Predicted {
   double cost = 0.0;        ///< what independent unit errors would add up to
   Index unpredictable = 0;  ///< directions of which the other rows say nothing
 };
@@ -143,12 +183,12 @@ class Cleared {
   }
 
   /// `part`: the columns of the root at L; `known`: of (Omega^-1)_LL.
-  LeftOut left_out(const MatrixXd& part, const Eigen::LLT<MatrixXd>& known) const {
+  Predicted left_out(const MatrixXd& part, const Eigen::LLT<MatrixXd>& known) const {
     const MatrixXd seen = known.matrixL().solve(part.transpose() * q_);
     const VectorXd scores = known.matrixL().solve(part.transpose() * residual_);
     const MatrixXd share = MatrixXd::Identity(seen.rows(), seen.rows()) - seen * seen.transpose();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(share);
-    LeftOut out;
+    Predicted out;
     for (Index i = 0; i < share.rows(); ++i) {
       const double value = eigen.eigenvalues()[i];
       if (value < kUnpredictable) {
@@ -185,13 +225,14 @@ std::vector<HeldoutVote> heldout_votes(const Windows& windows, const NoiseCoeffi
     const MatrixXd part = root(Eigen::all, fold.left);
     const Eigen::LLT<MatrixXd> known(part.transpose() * part);
     if (known.info() != Eigen::Success) continue;
-    const LeftOut ours = full.left_out(part, known);
+    const Predicted ours = full.left_out(part, known);
     for (std::size_t i = 0; i < without.size(); ++i) {
-      const LeftOut theirs = smaller[i].left_out(part, known);
+      const Predicted theirs = smaller[i].left_out(part, known);
       // The other rows do not show what the part alone holds: no vote.
       if (ours.unpredictable > theirs.unpredictable) continue;
       const double gain = theirs.cost - ours.cost;
       votes[i].gain += gain;
+      if (std::abs(gain) < kNoDifference) continue;
       votes[i].better += gain > 0.0 ? 1 : 0;
       ++votes[i].folds;
     }
@@ -207,22 +248,28 @@ double heldout_rms(const Windows& windows, const NoiseCoefficients& noise, const
   }
   const Index p = x.cols();
   if (std::ssize(bench) < p + 2) return kMissing;
-  const Index rank = p > 0 ? Eigen::ColPivHouseholderQR<MatrixXd>(x(bench, Eigen::all)).rank() : 0;
+  std::vector<Index> rows = bench;
+  rows.insert(rows.end(), quiet.begin(), quiet.end());
+  MatrixXd columns = x(rows, Eigen::all);
+  VectorXd seen = y(rows);
+  VectorXd weight = VectorXd::Ones(seen.size());
+  if (const auto weights = weights_of(windows_at(windows, rows), noise)) {
+    columns = weights->whiten(columns);
+    seen = weights->whiten(seen);
+    weight = weights->whiten(weight);
+  }
+  const Index rank =
+      p > 0 ? Eigen::ColPivHouseholderQR<MatrixXd>(columns.topRows(std::ssize(bench))).rank() : 0;
+  std::iota(rows.begin(), rows.end(), Index{0});
   double squares = 0.0;
   Index count = 0;
-  for (Fold& fold : folds_of(bench)) {
-    fold.kept.insert(fold.kept.end(), quiet.begin(), quiet.end());
+  for (Fold& fold : folds_of({rows.begin(), rows.begin() + std::ssize(bench)})) {
+    fold.kept.insert(fold.kept.end(), rows.begin() + std::ssize(bench), rows.end());
     if (std::ssize(fold.kept) < p) continue;
-    std::unique_ptr<Whitener> whitener;
-    if (noise.angle_random_walk_deg_per_sqrt_h > 0.0) {
-      if (auto made = make_whitener(windows_at(windows, fold.kept), noise)) {
-        whitener = std::move(*made);
-      }
-    }
-    const auto errors = predicted_badly(x, y, fold, whitener.get(), rank);
-    if (!errors) continue;
-    squares += errors->squaredNorm();
-    count += std::ssize(fold.left);
+    const auto told = predicted_badly(columns, seen, weight, fold, rank);
+    if (!told) continue;
+    squares += told->squaredNorm();
+    count += told->size();
   }
   return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : kMissing;
 }
@@ -232,7 +279,23 @@ double heldout_rms(const Table& table, const Windows& windows, const config::Mod
   const Signals signals(table, fitted.reference_temperature_c);
   const auto system = system_of(signals, fitted);
   if (!system) return kMissing;
-  return heldout_rms(windows, noise, system->x, system->y, system->y.size());
+  // How a memory began is the data's own, and rows that are left out may tell it too.
+  VectorXd y = system->y;
+  const Index own = system->x.cols() - system->starts;
+  std::vector<Index> complete;
+  for (Index i = 0; i < y.size(); ++i) {
+    if (system->x.row(i).allFinite()) complete.push_back(i);
+  }
+  if (system->starts > 0 && !complete.empty()) {
+    MatrixXd x = system->x(complete, Eigen::all);
+    VectorXd seen = y(complete);
+    if (const auto whitener = weights_of(windows_at(windows, complete), noise)) {
+      x = whitener->whiten(x);
+      seen = whitener->whiten(seen);
+    }
+    y -= system->x.rightCols(system->starts) * solve(x, seen).tail(system->starts);
+  }
+  return heldout_rms(windows, noise, system->x.leftCols(own), y, y.size());
 }
 
 double least_squares_rms(const Table& table, const config::ModelFile& fitted) {
@@ -244,15 +307,8 @@ double least_squares_rms(const Table& table, const config::ModelFile& fitted) {
     if (system->x.row(i).allFinite()) complete.push_back(i);
   }
   if (complete.empty()) return kMissing;
-  VectorXd left = system->y(complete);
-  if (system->x.cols() > 0) {
-    MatrixXd x = system->x(complete, Eigen::all);
-    for (Index column = 0; column < x.cols(); ++column) {
-      const double length = x.col(column).stableNorm();
-      if (length > 0.0) x.col(column) /= length;
-    }
-    left -= x * Eigen::CompleteOrthogonalDecomposition<MatrixXd>(x).solve(left);
-  }
+  const MatrixXd x = system->x(complete, Eigen::all);
+  const VectorXd left = system->y(complete) - x * solve(x, system->y(complete));
   return left.stableNorm() / std::sqrt(static_cast<double>(left.size()));
 }
 

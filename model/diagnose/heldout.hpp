@@ -11,10 +11,11 @@ namespace fogbench::model {
 
 /// RMS of predictions of rows that took no part in the fit, in the observable's unit: eight blocks
 /// of neighbouring rows are left out in turn, the coefficients fitted to the others (inner
-/// parameters as `fitted` has them, weighted by `noise`), and the block predicted by the model
-/// alone, without interpolating the noise. NaN when the rows do not suffice.
-/// `windows`: of the table's rows that have a measurement, which are in order and complete; the
-/// others are there for their history.
+/// parameters as `fitted` has them, weighted by the white part of `noise`), and the block predicted
+/// by the model alone, without interpolating the noise. Rows of which the others tell less than
+/// they do themselves do not count (a warm-up's first ones); how memories began (Effect::starts)
+/// all rows tell. NaN when the rows do not suffice. `windows`: of the table's rows that have a
+/// measurement, which are in order and complete; the others are there for their history.
 double heldout_rms(const Table& table, const Windows& windows, const config::ModelFile& fitted,
                    const NoiseCoefficients& noise);
 

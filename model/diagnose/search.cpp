@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 // A rival is dropped when its own world produces the leader's lead in less than this share of
 // draws; a shadow convicts the leader below kOutside.
 constexpr double kRivalKept = 0.05;
-constexpr double kOutside = 0.01;
+constexpr double kOutside = 0.004;
 // Each takes a simulation; who needs more has learned that he cannot tell.
 constexpr std::size_t kMostRivals = 8;
 // A shape that is the effect itself in these data, but for rounding, is ahead by less than this.
@@ -32,8 +32,12 @@ constexpr std::size_t kMostFurtherShapes = 3;
 // An added effect stays when dropping it is refuted at this level.
 constexpr double kStays = 0.02;
 constexpr int kMostChanges = 8;
-// Of the held-out cost, twice a log-likelihood: rows that took no part in the fit are exp(3), twenty
-// times, as likely with the effect as without it.
+// Where more leaders than this fail the gates, none of the catalogue is the truth.
+constexpr std::size_t kMostRefused = 4;
+// A stage holds the whitened library under each noise shape.
+constexpr std::size_t kMostStages = 5;
+// Of the held-out cost, twice a log-likelihood: rows that took no part in the fit are exp(3),
+// twenty times, as likely with the effect as without it.
 constexpr double kLeastGain = 6.0;
 
 MatrixXd joined(const MatrixXd& a, const MatrixXd& b) {
@@ -74,12 +78,16 @@ class Search {
       : input_(input), options_(options) {}
 
   SearchResult run() {
-    refused_ = options_.refused;
     do {
       while (found().size() < options_.most_effects && step()) {
       }
       judge_all();
     } while (!pass_gates());
+    for (Found& f : found()) {
+      Stage& stage = stage_without(&f);
+      find_rivals(f, stage);
+      face_shadows(f, stage);
+    }
     doubt_sums_of_one_variable();
     return std::move(result_);
   }
@@ -88,25 +96,40 @@ class Search {
   std::vector<Found>& found() { return result_.found; }
   const std::vector<Found>& found() const { return result_.found; }
 
-  /// The state with all found effects but one in the base. The one with none of them is kept.
+  /// The state with all found effects but one in the base. Those of late are kept: a search that
+  /// goes on without a refused effect comes the same way again.
   Stage& stage_without(const Found* except) {
-    const bool bare = found().size() == (except != nullptr ? 1u : 0u);
-    if (bare && bare_) return *bare_;
-    auto stage = std::make_unique<Stage>(input_, base_with(input_, found(), except), options_.seed);
-    auto& kept = bare ? bare_ : other_;
-    kept = std::move(stage);
-    return *kept;
+    std::vector<double> key;
+    for (const Found& f : found()) {
+      if (&f == except) continue;
+      key.push_back(static_cast<double>(f.candidate));
+      key.push_back(static_cast<double>(f.shape));
+      key.push_back(f.inner);
+      for (const Block& more : f.more) key.push_back(static_cast<double>(more.first));
+      key.push_back(-1.0);
+    }
+    const auto known = std::find_if(stages_.begin(), stages_.end(),
+                                    [&](const auto& kept) { return kept.first == key; });
+    if (known != stages_.end()) {
+      std::rotate(known, known + 1, stages_.end());
+    } else {
+      if (stages_.size() == kMostStages) stages_.erase(stages_.begin());
+      stages_.emplace_back(
+          std::move(key),
+          std::make_unique<Stage>(input_, base_with(input_, found(), except), options_.seed));
+    }
+    return *stages_.back().second;
   }
 
   /// Adds one effect, or a further shape to one that is there; false at the end.
   bool step() {
     if (input_.y.size() - base_with(input_, found()).cols() < kFewestFreeRows) return false;
     Stage& stage = stage_without(nullptr);
-    if (!leads_to_a_name(stage)) return look_outside(stage);
+    if (refused_.size() > kMostRefused || !leads_to_a_name(stage)) return look_outside(stage);
     const Index best = stage.leader(refused_);
     const double p = stage.p_value(best);
     result_.p_of_step.push_back(p);
-    if (p > (found().empty() ? options_.first_level : options_.later_level)) {
+    if (p > level()) {
       result_.bounds = stage.bounds();
       std::erase_if(result_.bounds, [&](const Bound& bound) {
         return std::any_of(found().begin(), found().end(),
@@ -114,7 +137,7 @@ class Search {
       });
       return look_outside(stage);
     }
-    if (absorb(stage, best, p)) return true;
+    if (absorb(stage, best)) return true;
     const auto candidate = static_cast<std::size_t>(best);
     if (is_found(candidate)) return false;
     found().push_back({.candidate = candidate,
@@ -122,18 +145,26 @@ class Search {
                        .shape = stage.detector().best_block(best).shape,
                        .inner = stage.refined(best),
                        .p_value = p,
-                       .inner_at_edge = stage.at_edge(best)});
+                       .inner_at_edge = stage.beyond_range(best)});
     return true;
   }
 
-  /// No effect is left to be found: is there still a shape that none has? Always false: the end.
+  /// No effect is left to be found: is there still a shape that none has, or one that could not be
+  /// named? Always false: the end.
   bool look_outside(const Stage& stage) {
-    const std::vector<Index> outside = with_refused(stage, -1);
-    if (outside.empty()) return false;
-    const Index best = stage.best(outside);
+    for (const std::size_t c : refused_) {
+      const auto refused = static_cast<Index>(c);
+      if (!stage.detector().testable(refused) || is_found(c)) continue;
+      convict(stage.candidate(refused).name, stage.p_value(refused), level());
+    }
+    if (stage.shadows().empty()) return false;
+    const Index best = stage.best(stage.shadows());
     convict(stage.candidate(best).name, stage.p_value(best), options_.outside_level);
     return false;
   }
+
+  /// What an effect needs to be added to those that are found.
+  double level() const { return found().empty() ? options_.first_level : options_.later_level; }
 
   /// An effect is left that was not refused.
   bool leads_to_a_name(const Stage& stage) const {
@@ -167,9 +198,11 @@ class Search {
 
   /// Gives the rest to an effect that was found already, with another value of its inner parameter,
   /// where that explains the rest as well as the leader does. A second jump is more than the effect
-  /// of one jump: something came and went.
-  bool absorb(Stage& stage, Index leader, double p) {
-    for (Found& f : found()) {
+  /// of one jump: something came and went, and the jump is refused. Something slow may be the
+  /// truth, of which one jump was the first half.
+  bool absorb(Stage& stage, Index leader) {
+    for (std::size_t at = 0; at < found().size(); ++at) {
+      Found& f = found()[at];
       const auto own = static_cast<Index>(f.candidate);
       const Candidate& candidate = stage.candidate(own);
       if (f.more.size() >= kMostFurtherShapes || !stage.detector().testable(own)) continue;
@@ -179,8 +212,11 @@ class Search {
           own == leader || (!candidate.instant() && lag < kHopeless &&
                             stage.plausible(own, lag, stage.effects()) > kRivalKept);
       if (!as_well) continue;
-      f.more.push_back(stage.detector().best_block(own));
-      if (candidate.instant()) convict("a pulse or a second jump in time", p, 1.0);
+      if (candidate.instant()) {
+        refuse({at, Refusal::kComesAndGoes});
+      } else {
+        f.more.push_back(stage.detector().best_block(own));
+      }
       return true;
     }
     return false;
@@ -190,8 +226,6 @@ class Search {
   /// takes another effect in its place when that one leads now. False when the list changed.
   bool judge(std::size_t at, bool may_change) {
     Found& f = found()[at];
-    f.rivals.clear();
-    f.or_shape.clear();
     Stage& stage = stage_without(&f);
     const auto own = static_cast<Index>(f.candidate);
     const bool testable = stage.detector().testable(own);
@@ -209,10 +243,8 @@ class Search {
     }
     f.shape = stage.detector().best_block(own).shape;
     f.inner = stage.refined(own);
-    f.inner_at_edge = stage.at_edge(own);
+    f.inner_at_edge = stage.beyond_range(own);
     f.p_value = stage.p_value(own);
-    find_rivals(f, stage);
-    face_shadows(f, stage);
     return true;
   }
 
@@ -226,51 +258,78 @@ class Search {
   }
 
   /// A name needs all of these: its inner parameter lies inside its range, its coefficient stands
-  /// beside those of all the others, and rows that took no part in the fit are predicted better
-  /// with it. What fails is refused for good, one at a time, the last found first, and the search
-  /// goes on without it. False when the list changed.
+  /// beside those of all the others, rows that took no part in the fit are predicted better with
+  /// it, and a refit that leaves the grid finds no fault. What fails is refused for good, one at a
+  /// time, the last found first, and the search goes on without it. False when the list changed.
   bool pass_gates() {
-    if (found().empty()) return true;
-    const auto noise = gls(input_.shapes, base_with(input_, found()), input_.y);
-    if (!noise) return true;
-    for (Found& f : found()) f.heldout = vote_on(f, noise->noise.noise);
-    for (std::size_t i = found().size(); i-- > 0;) {
-      Found& f = found()[i];
-      f.refusal = why_refused(f);
-      if (f.refusal == Refusal::kNone) continue;
-      refused_.push_back(f.candidate);
-      result_.refused.push_back(f);
-      found().erase(found().begin() + static_cast<std::ptrdiff_t>(i));
-      return false;
+    if (const auto noise = gls(input_.shapes(), base_with(input_, found()), input_.y)) {
+      for (Found& f : found()) f.heldout = vote_on(f, noise->noise.noise);
+      for (std::size_t i = found().size(); i-- > 0;) {
+        const Refusal why = why_refused(found()[i]);
+        if (why != Refusal::kNone) return refuse({i, why});
+      }
     }
-    return true;
+    const auto refused = options_.refit ? options_.refit(found()) : std::nullopt;
+    return !refused || refuse(*refused);
   }
 
+  bool refuse(const Refused& refused) {
+    Found& f = found()[refused.at];
+    f.refusal = refused.why;
+    refused_.push_back(f.candidate);
+    result_.refused.push_back(std::move(f));
+    found().erase(found().begin() + static_cast<std::ptrdiff_t>(refused.at));
+    return false;
+  }
+
+  /// Noise that wanders predicts rows from their neighbours as well as a slow effect does. So where
+  /// nothing is gained beside it, the model's own predictions are asked, which know no neighbours;
+  /// they must gain twice as much, for what wanders is not independent.
   HeldoutVote vote_on(const Found& f, const NoiseCoefficients& noise) const {
-    const Candidate& candidate = input_.tried.candidates[f.candidate];
-    const MatrixXd core = core_of(f, candidate), others = base_with(input_, found(), &f);
-    const Index starts = core.cols() - candidate.own * (candidate.parameter ? 2 : 1);
-    const auto votes =
-        heldout_votes(input_.windows, noise, full_rank(joined(others, core)),
-                      {full_rank(joined(others, core.middleCols(candidate.own, starts)))}, input_.y,
-                      input_.bench_rows);
-    return votes.empty() ? HeldoutVote{} : votes.front();
+    const Candidate& candidate = input_.tried().candidates[f.candidate];
+    const MatrixXd its = candidate.shapes[f.shape](f.inner);
+    const MatrixXd others = base_with(input_, found(), &f);
+    const MatrixXd with = full_rank(joined(others, its));
+    const MatrixXd without = full_rank(joined(others, its.rightCols(its.cols() - candidate.own)));
+    const auto vote = [&](const NoiseCoefficients& under) {
+      const auto votes =
+          heldout_votes(input_.windows, under, with, {without}, input_.y, input_.bench_rows);
+      return votes.empty() ? HeldoutVote{} : votes.front();
+    };
+    const HeldoutVote beside_noise = vote(noise);
+    if (beside_noise.folds == 0 || predicts(beside_noise, kLeastGain)) return beside_noise;
+    const HeldoutVote alone =
+        vote({.angle_random_walk_deg_per_sqrt_h = noise.angle_random_walk_deg_per_sqrt_h});
+    if (predicts(alone, 2.0 * kLeastGain)) return alone;
+    // A drift or a warm-up is one of a kind in a run: no part of it is like another.
+    return candidate.slow && !candidate.instant() ? HeldoutVote{} : beside_noise;
+  }
+
+  static bool predicts(const HeldoutVote& vote, double least_gain) {
+    return 2 * vote.better > vote.folds && vote.gain > least_gain;
   }
 
   Refusal why_refused(const Found& f) const {
-    const HeldoutVote& vote = f.heldout;
     if (f.inner_at_edge) return Refusal::kAtEdge;
     if (!stands(f)) return Refusal::kNotDistinguished;
-    const bool better = 2 * vote.better > vote.folds && vote.gain > kLeastGain;
-    return vote.folds == 0 || better ? Refusal::kNone : Refusal::kNotPredicting;
+    if (f.heldout.folds == 0 || predicts(f.heldout, kLeastGain) || or_walk(f)) {
+      return Refusal::kNone;
+    }
+    return Refusal::kNotPredicting;
   }
 
-  /// A coefficient of the effect is larger than its expanded uncertainty, all the others in the
-  /// model and its inner parameter free.
+  /// A slow effect that a random walk may be as well, which is all that left-out rows could tell.
+  bool or_walk(const Found& f) const {
+    return input_.tried().candidates[f.candidate].slow && f.p_value > kBeyondWalk;
+  }
+
+  /// A coefficient of the effect is larger than its expanded uncertainty at this value of its inner
+  /// parameter, all the others in the model. (With the inner parameter free the two are but one
+  /// number in the limit where the effect has one shape: a saturation that hardly bends.)
   bool stands(const Found& f) const {
-    const Candidate& candidate = input_.tried.candidates[f.candidate];
-    const MatrixXd x = joined(core_of(f, candidate), base_with(input_, found(), &f));
-    const auto solved = gls(input_.shapes, x, input_.y);
+    const Candidate& candidate = input_.tried().candidates[f.candidate];
+    const MatrixXd x = joined(candidate.shapes[f.shape](f.inner), base_with(input_, found(), &f));
+    const auto solved = gls(input_.shapes(), x, input_.y);
     if (!solved) return true;  // too few rows to tell
     bool known = false;
     for (Index i = 0; i < candidate.own; ++i) {
@@ -301,8 +360,7 @@ class Search {
         behind.emplace_back(std::max(lag, 0.0), stage.candidate(c).name);
       }
     }
-    if (stage.candidate(own).slow && f.p_value > kBeyondWalk)
-      behind.emplace_back(0.0, "random_walk");
+    if (or_walk(f)) behind.emplace_back(0.0, "random_walk");
     double total = 1.0;
     for (const auto& [lag, name] : behind) total += std::exp(-0.5 * lag);
     f.probability = 1.0 / total;
@@ -337,10 +395,10 @@ class Search {
   /// Two curves over one variable are one other curve as well, and nothing in the data says which.
   void doubt_sums_of_one_variable() {
     for (Found& f : found()) {
-      const std::string variable = input_.tried.candidates[f.candidate].curve_over;
+      const std::string variable = input_.tried().candidates[f.candidate].curve_over;
       if (variable.empty()) continue;
       const auto curves = std::count_if(found().begin(), found().end(), [&](const Found& other) {
-        return input_.tried.candidates[other.candidate].curve_over == variable;
+        return input_.tried().candidates[other.candidate].curve_over == variable;
       });
       if (curves < 2) continue;
       f.or_shape = "one other function of " + variable;
@@ -352,7 +410,7 @@ class Search {
   const SearchOptions& options_;
   SearchResult result_;
   std::vector<std::size_t> refused_;
-  std::unique_ptr<Stage> bare_, other_;
+  std::vector<std::pair<std::vector<double>, std::unique_ptr<Stage>>> stages_;  ///< latest last
 };
 
 }  // namespace
@@ -360,7 +418,7 @@ class Search {
 MatrixXd base_with(const SearchInput& input, const std::vector<Found>& found, const Found* except) {
   MatrixXd base = input.base;
   for (const Found& f : found) {
-    if (&f != except) base = joined(base, columns_of(f, input.tried.candidates[f.candidate]));
+    if (&f != except) base = joined(base, columns_of(f, input.tried().candidates[f.candidate]));
   }
   return full_rank(base);
 }

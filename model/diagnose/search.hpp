@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +26,9 @@ struct Rival {
 /// Why an effect that leads cannot be named.
 enum class Refusal {
   kNone,
-  kAtEdge,            ///< its inner parameter is not identified
+  kAtEdge,            ///< the data push its inner parameter beyond its range
   kNotDistinguished,  ///< no coefficient is larger than its expanded uncertainty
+  kComesAndGoes,      ///< a jump that a second one follows
   kNotPredicting,     ///< rows that took no part in the fit are not predicted better
 };
 
@@ -71,12 +74,20 @@ struct SearchResult {
 /// record's. `base` holds the model's own columns (with the tangents of its inner
 /// parameters), of full rank; y is the observable less the terms that are held.
 struct SearchInput {
-  const Library& tried;
-  const NoiseShapes& shapes;
+  const WhitenedLibrary& whitened;
   const Windows& windows;
   Eigen::Index bench_rows;
   Eigen::MatrixXd base;
   Eigen::VectorXd y;
+
+  const Library& tried() const { return whitened.library(); }
+  const NoiseShapes& shapes() const { return whitened.shapes(); }
+};
+
+/// Which of the found effects is not to be named, and why.
+struct Refused {
+  std::size_t at = 0;
+  Refusal why = Refusal::kNone;
 };
 
 struct SearchOptions {
@@ -85,11 +96,13 @@ struct SearchOptions {
   double outside_level = 0.005;  ///< of a shape from outside where no effect is left to be found
   std::size_t most_effects = 5;
   std::uint64_t seed = 20260101;
-  std::vector<std::size_t> refused;  ///< candidates that are not to be named
+  /// Asked of effects that have passed all gates, none included: which of them a refit that leaves
+  /// the grid refuses.
+  std::function<std::optional<Refused>(const std::vector<Found>&)> refit;
 };
 
 /// The model needs this many rows beyond its terms, or nothing can be said of noise or structure.
-inline constexpr Eigen::Index kFewestFreeRows = 5;
+inline constexpr Eigen::Index kFewestFreeRows = 7;
 
 SearchResult search(const SearchInput& input, const SearchOptions& options);
 

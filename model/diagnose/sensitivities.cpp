@@ -16,6 +16,7 @@ namespace fogbench::model {
 namespace {
 
 using effects::SensitivityForm;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Each column is several candidates; a log of a hundred channels is for the user to choose from.
@@ -100,8 +101,10 @@ class CausesOf {
       grid = lags(*candidate.parameter);
     }
     candidate.shapes.push_back([&form, value = value_, source = builder_.source()](double tau_s) {
-      return LibraryBuilder(source).averaged(
-          effects::sensitivity_values(form, source.signals, value, tau_s));
+      const MatrixXd starts = effects::sensitivity_starts(form, source.signals, value, tau_s);
+      MatrixXd out(value.size(), 1 + starts.cols());
+      out << effects::sensitivity_values(form, source.signals, value, tau_s), starts;
+      return LibraryBuilder(source).averaged(std::move(out));
     });
     builder_.add_on_grid(std::move(candidate), grid);
   }

@@ -23,6 +23,8 @@ constexpr double kStands = 2.0;
 constexpr double kBeyondRangeOfInput = 1.5;
 // exp(-3) of the likelihood: what one parameter more may gain by noise.
 constexpr double kNearlyAsWell = 6.0;
+// Twice the log-likelihood that one parameter gains by chance in less than 5 %.
+constexpr double kPushes = 3.84;
 
 Index draws_for(Index rows) {
   return rows > kManyRows ? kNullDrawsManyRows : kNullDraws;
@@ -34,7 +36,7 @@ Stage::Stage(const SearchInput& input, MatrixXd base, std::uint64_t seed)
     : input_(input),
       base_(std::move(base)),
       seed_(seed),
-      detector_(input.shapes, base_, input.tried, input.y),
+      detector_(input.whitened, base_, input.y),
       calibration_(detector_.lambdas(detector_.draw(draws_for(input.y.size()), seed))),
       lead_(calibration_.lead(detector_.observed())) {
   for (Index c = 0; c < detector_.candidates(); ++c) {
@@ -97,6 +99,20 @@ bool Stage::at_edge(Index c) const {
   if (!which.parameter || which.instant()) return false;
   const double inner = detector_.best_block(c).inner;  // the grid is the same for every shape
   return inner == which.blocks.front().inner || inner == which.blocks.back().inner;
+}
+
+bool Stage::beyond_range(Index c) const {
+  if (!at_edge(c)) return false;
+  const Candidate& which = candidate(c);
+  const Block& end = detector_.best_block(c);
+  double within = -1.0;
+  for (const Block& block : which.blocks) {
+    const bool is_end =
+        block.inner == which.blocks.front().inner || block.inner == which.blocks.back().inner;
+    if (is_end || block.shape != end.shape) continue;
+    within = std::max(within, detector_.lambda_of(which.shapes[block.shape](block.inner)));
+  }
+  return detector_.lambda_of(which.shapes[end.shape](end.inner)) - within > kPushes;
 }
 
 double Stage::refined(Index c) const {

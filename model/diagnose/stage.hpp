@@ -18,7 +18,7 @@ class Stage {
 
   const Detector& detector() const { return detector_; }
   const Candidate& candidate(Eigen::Index c) const {
-    return input_.tried.candidates[static_cast<std::size_t>(c)];
+    return input_.tried().candidates[static_cast<std::size_t>(c)];
   }
   /// Testable effects and shadows.
   const std::vector<Eigen::Index>& effects() const { return effects_; }
@@ -46,7 +46,11 @@ class Stage {
   double plausible(Eigen::Index world, double lag, const std::vector<Eigen::Index>& others);
   /// The best point of the candidate's inner parameter, by golden section between grid points.
   double refined(Eigen::Index c) const;
+  /// The best point of the candidate's grid is an end of it.
   bool at_edge(Eigen::Index c) const;
+  /// The data push it beyond its grid: an end explains them better than what lies within, by more
+  /// than one parameter gains by chance.
+  bool beyond_range(Eigen::Index c) const;
   std::vector<Bound> bounds() const;
 
  private:

@@ -34,7 +34,7 @@ struct Node {
   double time_s, value;
 };
 
-double between(const std::vector<Node>& nodes, double time_s) {
+double value_at(const std::vector<Node>& nodes, double time_s) {
   const auto after = std::lower_bound(nodes.begin(), nodes.end(), time_s,
                                       [](const Node& node, double t) { return node.time_s < t; });
   if (after == nodes.begin()) return nodes.front().value;
@@ -156,7 +156,7 @@ std::vector<double> through_the_steps(std::span<const double> readings,
                      [](const Node& a, const Node& b) { return a.time_s < b.time_s; });
     for (std::size_t i = run.begin; i < run.end; ++i) {
       if (std::isnan(readings[i]) || std::isnan(time_s[i])) continue;
-      out[i] = std::clamp(between(nodes, time_s[i]), readings[i] - 0.5 * resolution,
+      out[i] = std::clamp(value_at(nodes, time_s[i]), readings[i] - 0.5 * resolution,
                           readings[i] + 0.5 * resolution);
     }
   }

@@ -69,6 +69,11 @@ std::string effect_sentence(const MissingEffect& m) {
       line += fmt::format("{}{} not determined", i > 0 ? ", " : "", e.name);
       continue;
     }
+    if (m.inner_open && e.name == m.inner_name) {
+      line += fmt::format(" at {} = {:.3g} {}, which these data do not determine", e.name, e.value,
+                          e.unit);
+      continue;
+    }
     const config::Rounded r = config::rounded(e.value, e.coverage_factor * e.standard_error);
     line += fmt::format("{}{} = {} +- {} {}", i > 0 ? ", " : "", e.name, r.value, r.uncertainty,
                         e.unit);
@@ -109,12 +114,13 @@ std::string formula_sentence(const Diagnosis& d) {
 std::string refusal_sentence(const Found& refused) {
   switch (refused.refusal) {
     case Refusal::kAtEdge:
-      return fmt::format(
-          "{} is not named: its inner parameter runs to the end of its range, these "
-          "data do not identify it.",
-          refused.effect);
+      return fmt::format("{} is not named: it fits best with its inner parameter beyond its range.",
+                         refused.effect);
     case Refusal::kNotDistinguished:
       return fmt::format("{} is not named: its coefficient cannot be distinguished from zero.",
+                         refused.effect);
+    case Refusal::kComesAndGoes:
+      return fmt::format("{} is not named: a second jump follows, what came went again.",
                          refused.effect);
     case Refusal::kNotPredicting:
       return fmt::format("{} is not named: it does not predict held-out parts better.",

@@ -19,14 +19,14 @@ double advanced(double x, double from, double to, double span_s, double tau_s) {
 }
 
 /// More gaps than this are no accident.
-constexpr std::size_t kMostGaps = 6;
+constexpr std::size_t kMostGaps = 3;
 /// Rows are missing where this share of the usual step is beyond the usual gap, and 10 s at least:
 /// in less no field and no temperature goes anywhere and comes back.
 constexpr double kMissingStep = 0.75;
 constexpr double kLeastGap_s = 10.0;
 /// Where in its band a play may begin, in half-widths from the middle. Between them the play is
 /// nearly a mean of its neighbours.
-constexpr std::array<double, 4> kBeginnings = {-1.0, -1.0 / 3.0, 1.0 / 3.0, 1.0};
+constexpr std::array<double, 2> kBeginnings = {-1.0, 1.0};
 
 double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

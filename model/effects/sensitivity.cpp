@@ -72,6 +72,10 @@ class Sensitivity final : public Effect {
     return sensitivity_values(form_, signals, signals.signal(column_),
                               inner.empty() ? 0.0 : inner[0]);
   }
+  Eigen::MatrixXd starts(const Signals& signals, std::span<const double> inner) const override {
+    return sensitivity_starts(form_, signals, signals.signal(column_),
+                              inner.empty() ? 0.0 : inner[0]);
+  }
 
  private:
   const SensitivityForm& form_;
@@ -111,6 +115,12 @@ Eigen::VectorXd sensitivity_values(const SensitivityForm& form, const Signals& s
   if (form.with.empty()) return x;
   const bool field = form.with.ends_with("_ut");
   return x.cwiseProduct(signals.signal(form.with)) / (field ? kFieldUnitUt : 1.0);
+}
+
+Eigen::MatrixXd sensitivity_starts(const SensitivityForm& form, const Signals& signals,
+                                   const Eigen::VectorXd& x, double tau_s) {
+  if (is_lagged(form)) return lag_starts(signals, x, tau_s);
+  return Eigen::MatrixXd(x.size(), 0);
 }
 
 }  // namespace fogbench::model::effects

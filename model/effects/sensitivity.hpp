@@ -53,5 +53,9 @@ const Effect* find_sensitivity(std::string_view id);
 /// missing. `tau_s` of the lagged form.
 Eigen::VectorXd sensitivity_values(const SensitivityForm& form, const Signals& signals,
                                    const Eigen::VectorXd& x, double tau_s);
+/// What they may lack because nobody knows how the lag began (Effect::starts); no columns for the
+/// other forms.
+Eigen::MatrixXd sensitivity_starts(const SensitivityForm& form, const Signals& signals,
+                                   const Eigen::VectorXd& x, double tau_s);
 
 }  // namespace fogbench::model::effects

@@ -12,7 +12,7 @@
 namespace fogbench::tests {
 namespace {
 
-constexpr std::size_t kFields = 15;
+constexpr std::size_t kFields = 16;
 
 Answer answer_of_names(const std::vector<std::string>& names) {
   Answer out;
@@ -49,6 +49,7 @@ Result<Record> parse_record(const std::string& line) {
   }
   out.nearest = field[11];
   out.says = field[14];
+  if (field[15] != "-") out.contradiction = field[15];
   return out;
 }
 
@@ -77,6 +78,7 @@ Record run_trial(TrialMaker& maker, const DiagnosisCase& what, std::uint64_t num
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   out.outcome = judge(answer, what.hidden);
   out.says = answer.says;
+  out.contradiction = answer.contradiction;
   if (with_baselines) {
     const auto answers = baseline_answers(trial.table, trial.model);
     for (const auto& names : answers) {
@@ -100,11 +102,12 @@ Record run_trial(TrialMaker& maker, const DiagnosisCase& what, std::uint64_t num
 std::string to_line(const Record& r) {
   std::vector<int> baselines;
   for (const Outcome one : r.baselines) baselines.push_back(static_cast<int>(one));
-  return fmt::format("{}\t{}\t{}\t{}\t{:g}\t{}\t{}\t{}\t{}\t{}\t{:.4f}\t{}\t{:.3f}\t{:.4g}\t{}",
+  return fmt::format("{}\t{}\t{}\t{}\t{:g}\t{}\t{}\t{}\t{}\t{}\t{:.4f}\t{}\t{:.3f}\t{:.4g}\t{}\t{}",
                      r.part, r.design, r.noise, r.truth, r.s, r.rows, r.trial, r.seed,
                      static_cast<int>(r.outcome),
                      baselines.empty() ? "-" : fmt::format("{}", fmt::join(baselines, " ")),
-                     r.cosine, r.nearest.empty() ? "-" : r.nearest, r.seconds, r.inner, r.says);
+                     r.cosine, r.nearest.empty() ? "-" : r.nearest, r.seconds, r.inner, r.says,
+                     r.contradiction.empty() ? "-" : r.contradiction);
 }
 
 Result<std::vector<Record>> read_records(const std::filesystem::path& file) {

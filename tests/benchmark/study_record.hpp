@@ -25,6 +25,7 @@ struct Record {
   std::string nearest;
   double seconds = 0.0;  ///< of the verdict
   std::string says;
+  std::string contradiction;  ///< within the verdict; empty: none
 };
 
 /// "truth" of a case: "magnetic_hysteresis_z~other", "nothing, static_record".

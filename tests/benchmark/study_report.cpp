@@ -268,6 +268,14 @@ std::string study_page(const std::vector<Record>& records, const std::string& co
   for (const Record& r : records) seconds.push_back(r.seconds);
   out += fmt::format("    {}\n\n{} trials", command, records.size());
   if (!seconds.empty()) out += fmt::format(", {} s a verdict in the median", median_text(seconds));
+  const auto contradict = [](const Record& r) { return !r.contradiction.empty(); };
+  out += fmt::format("; {} verdicts contradict themselves",
+                     std::count_if(records.begin(), records.end(), contradict));
+  std::set<std::string> rules;
+  for (const Record& r : records) {
+    if (contradict(r)) rules.insert(r.contradiction);
+  }
+  if (!rules.empty()) out += fmt::format(" ({})", fmt::join(rules, "; "));
   out += ".\n\n## Figures\n\n" + figures_table(records);
   out += "\n## Nothing hidden\n\n" + nulls_table(records);
   const std::vector<std::pair<std::string, std::string>> parts{

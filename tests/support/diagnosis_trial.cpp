@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace fogbench::tests {
 namespace {
@@ -66,6 +67,36 @@ std::string_view name_of(Outcome outcome) {
       "right", "right in a set", "large set",   "set without truth", "wrong name",
       "extra", "part only",      "unexplained", "or another shape",  "adequate"};
   return kNames[static_cast<std::size_t>(outcome)];
+}
+
+std::string contradiction_in(const model::Diagnosis& d) {
+  constexpr double kRounding = 1.02, kByChance = 1.25, kNear = 1.6, kPlain = 6.0, kRare = 2e-3;
+  for (std::size_t i = 1; i < d.ladder.size(); ++i) {
+    if (d.ladder[i].rms > kRounding * d.ladder[i - 1].rms) return "the RMS rises with an effect";
+  }
+  if (d.noise_floor > kByChance * d.ladder.back().rms) return "the noise floor is above the RMS";
+  if (d.verdict == model::Verdict::kNothingMissing) {
+    for (const model::Region& region : d.before.regions) {
+      if (std::abs(region.z) > kPlain && region.p_family_wise < kRare)
+        return "adequate beside a misfit";
+    }
+  }
+  if (d.verdict != model::Verdict::kMissingEffect) return {};
+  for (const model::MissingEffect& m : d.missing) {
+    if (m.found.inner_at_edge) return m.found.effect + " is named at the edge of its range";
+    if (m.found.heldout.folds > 0 && 2 * m.found.heldout.better <= m.found.heldout.folds) {
+      return m.found.effect + " is named, but predicts nothing";
+    }
+    bool stands = false, known = false;
+    for (const model::Estimate& e : m.estimates) {
+      if (e.name == m.inner_name || !std::isfinite(e.standard_error)) continue;
+      known = true;
+      stands = stands || std::abs(e.value) >= e.coverage_factor * e.standard_error;
+    }
+    if (known && !stands) return m.found.effect + " is named, but may be zero";
+  }
+  if (d.ladder.back().heldout_rms > kNear * d.noise_floor) return "named, and far from the floor";
+  return {};
 }
 
 Outcome judge(const Answer& answer, const std::vector<std::string>& hidden) {
@@ -134,6 +165,7 @@ Answer answer_of(const Trial& trial) {
     return out;
   }
   out.verdict = diagnosis->verdict;
+  out.contradiction = contradiction_in(*diagnosis);
   std::vector<std::string> names;
   for (const model::MissingEffect& missing : diagnosis->missing) {
     std::vector<std::string> set{std::string(missing.found.effect)};
@@ -144,6 +176,7 @@ Answer answer_of(const Trial& trial) {
     names.push_back(std::move(name));
     out.sets.push_back(std::move(set));
   }
+  if (out.sets.empty()) out.sets = diagnosis->ambiguous;  // the slow effects, or a random walk
   out.says = fmt::format("{}: {} (p {:.2g})", model::name_of(out.verdict), fmt::join(names, " + "),
                          diagnosis->p_adequate);
   if (out.verdict == model::Verdict::kUnexplained) {

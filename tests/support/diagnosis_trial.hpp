@@ -53,8 +53,13 @@ struct Answer {
   model::Verdict verdict = model::Verdict::kNothingMissing;
   std::vector<std::vector<std::string>> sets;  ///< one an effect found; one name: no rival
   std::string or_shape;                        ///< of the first effect found
+  std::string contradiction;                   ///< contradiction_in(); empty: none
   std::string says;                            ///< "warm_up | drift_linear + bias_step, p ..."
 };
+
+/// What a verdict may never say beside itself, whatever the truth is; the first that it does say;
+/// empty: none.
+std::string contradiction_in(const model::Diagnosis& diagnosis);
 
 /// Each hidden effect needs a set of its own. Where nothing is hidden, sets that all hold
 /// "random_walk" are kRightInSet.

@@ -58,10 +58,11 @@ TEST_F(DiagnoseCommandTest, JsonHasTheKeysThatScriptsRelyOn) {
       json(diagnose(table("t.csv"), {"--candidate", path("wave.json"), "--json"}));
   std::set<std::string> keys;
   for (const auto& [key, value] : document.items()) keys.insert(key);
-  EXPECT_EQ(keys, (std::set<std::string>{"verdict", "p_adequate", "false_alarm_rate", "fit",
-                                         "noise", "failures", "missing", "ambiguous", "unexplained",
-                                         "not_testable", "bounds", "next_measurements", "ladder",
-                                         "sentences", "warnings", "next"}));
+  EXPECT_EQ(keys,
+            (std::set<std::string>{"verdict", "p_adequate", "false_alarm_rate", "fit", "noise",
+                                   "failures", "missing", "ambiguous", "unexplained",
+                                   "not_testable", "bounds", "next_measurements", "ladder",
+                                   "left_out", "noise_source", "sentences", "warnings", "next"}));
   ASSERT_FALSE(document["missing"].empty());
   const auto& found = document["missing"][0];
   EXPECT_EQ(found["effect"], "my_wave");

@@ -28,7 +28,10 @@ using Json = nlohmann::json;
 using Numbers = std::map<std::string, double>;
 
 constexpr double kUncertainties = 1.5;  // of k = 2 each: three standard errors
-constexpr double kOverTheFloor = 1.1;
+// Rows that are left out are predicted with coefficients that were fitted without them, and the
+// floor is never more than this record's own RMS: for ten columns on 120 rows the two differ by
+// sqrt((n + p) / (n - p)) = 1.09 in the mean.
+constexpr double kOverTheFloor = 1.2;
 
 struct HiddenCase {
   std::string effect;
@@ -220,10 +223,7 @@ void expect_true(const Json& found, const HiddenCase& c) {
     if (name == "phase_deg") continue;
     const Json& stated = uncertainty.at(c.effect + "." + name);
     // An instant is known to the window in which it lies, and has no standard error.
-    double error = stated.is_null() ? 200.0 : kUncertainties * stated.get<double>();
-    // A lag is taken as settled before the first row. It is not, and the stated error knows nothing
-    // of what that costs: 2 % of tau here.
-    if (c.effect == "temperature_rate_lagged") error = std::max(error, 0.03 * truth);
+    const double error = stated.is_null() ? 200.0 : kUncertainties * stated.get<double>();
     EXPECT_NEAR(found.at("parameters").value(name, NAN), truth, error) << name;
   }
 }
