@@ -19,7 +19,7 @@ namespace fogbench::model {
 namespace {
 
 // Of what was measured: a misfit that is smaller is rounding.
-constexpr double kRounding = 1e-12;
+constexpr double kRoundingOfMeasured = 1e-12;
 
 /// Regions of the residual, as sums over their rows.
 struct Cells {
@@ -136,7 +136,7 @@ Result<Comparison> compare(const Table& table, const config::ModelFile& model,
       if (region.drift_allowed) region.offset = scores.offset[g];
       region.p_family_wise = scores.family_wise[g];
       const double off = region.drift_allowed ? region.offset : region.residual;
-      if (std::abs(off) <= kRounding * std::abs(region.observed)) {
+      if (std::abs(off) <= kRoundingOfMeasured * std::abs(region.observed)) {
         region.z = 0.0;
         region.p_family_wise = 1.0;
       }
