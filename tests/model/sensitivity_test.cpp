@@ -13,7 +13,7 @@
 namespace fogbench::model {
 namespace {
 
-constexpr std::size_t kRows = 90;
+constexpr std::size_t kRowsOfSupply = 90;
 
 /// Windows of three minutes, a field that goes up and down, a supply that wanders, and a rate of
 /// the field alone.
@@ -22,7 +22,7 @@ Table wandering_supply(std::uint64_t seed) {
   std::normal_distribution<double> normal;
   std::vector<double> time, field, supply, rate;
   double volts = 5.0;
-  for (std::size_t i = 0; i < kRows; ++i) {
+  for (std::size_t i = 0; i < kRowsOfSupply; ++i) {
     volts += 0.02 * normal(random);
     time.push_back(180.0 * static_cast<double>(i + 1));
     field.push_back(200.0 * std::sin(0.35 * static_cast<double>(i)));
@@ -31,7 +31,7 @@ Table wandering_supply(std::uint64_t seed) {
   }
   Table out;
   out.set_column("time_s", time);
-  out.set_column("duration_s", std::vector<double>(kRows, 180.0));
+  out.set_column("duration_s", std::vector<double>(kRowsOfSupply, 180.0));
   out.set_column("field_z_ut", field);
   out.set_column("supply_v", supply);
   out.set_column("rate_deg_per_h", rate);
@@ -61,7 +61,7 @@ TEST(Sensitivity, IsAnEffectOfAnyColumn) {
   const Table table = wandering_supply(1);
   const Signals signals(table, 21.0);
   const Eigen::MatrixXd values = effect->regressor(signals, {});
-  for (std::size_t i = 0; i < kRows; ++i) {
+  for (std::size_t i = 0; i < kRowsOfSupply; ++i) {
     EXPECT_DOUBLE_EQ(values(static_cast<Eigen::Index>(i), 0),
                      table.column("supply_v")[i] * table.column("field_z_ut")[i] / 100.0);
   }
@@ -113,7 +113,7 @@ TEST(Sensitivity, AProductWithTheFieldIsNamed) {
 
 TEST(Sensitivity, AConstantColumnIsNotTestable) {
   Table table = wandering_supply(5);
-  table.set_column("supply_v", std::vector<double>(kRows, 5.0));
+  table.set_column("supply_v", std::vector<double>(kRowsOfSupply, 5.0));
   const auto found = diagnosis_of(table);
   ASSERT_TRUE(found);
   const auto& not_testable = found->not_testable;
