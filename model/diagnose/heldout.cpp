@@ -141,6 +141,7 @@ std::optional<VectorXd> predicted_badly(const MatrixXd& x, const VectorXd& y,
   const VectorXd errors = (y(fold.left) - left * qr.solve(y(fold.kept))).cwiseProduct(unit);
   // Of the predictions' variance, in units of a row's own.
   const Index p = qr.rank();
+  if (p == 0) return y(fold.left).cwiseProduct(unit);  // columns of nothing
   const MatrixXd ordered = (left * qr.colsPermutation()).leftCols(p);
   const VectorXd uncertain = qr.matrixQR()
                                  .topLeftCorner(p, p)
@@ -184,7 +185,8 @@ class Cleared {
 
   /// `part`: the columns of the root at L; `known`: of (Omega^-1)_LL.
   Predicted left_out(const MatrixXd& part, const Eigen::LLT<MatrixXd>& known) const {
-    const MatrixXd seen = known.matrixL().solve(part.transpose() * q_);
+    MatrixXd seen(part.cols(), 0);
+    if (q_.cols() > 0) seen = known.matrixL().solve(part.transpose() * q_);
     const VectorXd scores = known.matrixL().solve(part.transpose() * residual_);
     const MatrixXd share = MatrixXd::Identity(seen.rows(), seen.rows()) - seen * seen.transpose();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(share);
