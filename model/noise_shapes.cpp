@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "model/gls.hpp"
+#include "model/median.hpp"
 #include "model/stated_errors.hpp"
 #include "model/window_geometry.hpp"
 
@@ -17,12 +18,6 @@ constexpr double kMostFlickerPerWindow = 30.0;
 constexpr double kLeastWalkPerRun = 1.0;
 constexpr double kMostWalkPerRow = 3.0;
 constexpr double kLeastSpan = 10.0;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A ratio's values on the grid, zero first, each with the prior probability of its cell.
 struct Axis {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/median.hpp"
 #include "model/stated_errors.hpp"
 
 namespace fogbench::model {
@@ -87,12 +88,7 @@ Eigen::VectorXd Observations::window_lengths() const {
       if (step > 0.0) steps.push_back(step);
     }
   }
-  double usual = kUntimedWindow_s;
-  if (!steps.empty()) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    usual = *middle;
-  }
+  const double usual = steps.empty() ? kUntimedWindow_s : median(std::move(steps));
   Eigen::VectorXd out(time.size());
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     out[i] = usual;

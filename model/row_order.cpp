@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "model/median.hpp"
+
 namespace fogbench::model {
 namespace {
 
@@ -162,9 +164,7 @@ class RunRows {
       if (!stamps.empty()) steps.push_back(time_[i] - stamps.back());
       stamps.push_back(time_[i]);
     }
-    const auto middle = steps.begin() + std::ssize(steps) / 2;
-    std::nth_element(steps.begin(), middle, steps.end());
-    const double room = kRoom * *middle;
+    const double room = kRoom * median(std::move(steps));
     std::vector<bool> out(rises.size(), false);
     for (std::size_t i = 0; i < rises.size(); ++i) {
       if (rises[i] || std::isnan(time_[i])) continue;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "model/median.hpp"
+
 namespace fogbench::model {
 namespace {
 
@@ -15,12 +17,6 @@ constexpr double kHalfOfNormal = 0.6745;
 
 bool states(double error) {
   return error > 0.0 && std::isfinite(error);
-}
-
-double median_value(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// log of error^2 x duration in h, of the rows that state one.
@@ -39,14 +35,14 @@ std::vector<double> stated_logarithms(const Windows& windows) {
 
 double stated_white(const Windows& windows) {
   const std::vector<double> stated = stated_logarithms(windows);
-  return stated.empty() ? 0.0 : std::exp(0.5 * median_value(stated));
+  return stated.empty() ? 0.0 : std::exp(0.5 * median(stated));
 }
 
 Eigen::VectorXd stated_white_scale(const Windows& windows) {
   Eigen::VectorXd out = Eigen::VectorXd::Ones(windows.rows());
   const std::vector<double> stated = stated_logarithms(windows);
   if (stated.size() < 2) return out;
-  const double usual = median_value(stated);
+  const double usual = median(stated);
   double squares = 0.0;
   std::vector<double> steps;
   for (std::size_t i = 0; i < stated.size(); ++i) {
@@ -55,7 +51,7 @@ Eigen::VectorXd stated_white_scale(const Windows& windows) {
   }
   const double whole = squares / static_cast<double>(stated.size());
   if (whole == 0.0) return out;
-  const double step = median_value(std::move(steps)) / kHalfOfNormal;
+  const double step = median(std::move(steps)) / kHalfOfNormal;
   const double chance = std::min(0.5 * step * step, kMostChance);
   const double believed = std::max(0.0, 1.0 - chance / whole);
   std::size_t next = 0;

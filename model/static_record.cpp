@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/median.hpp"
+
 namespace fogbench::model {
 namespace {
 
@@ -40,9 +42,7 @@ Result<StaticRecord> static_record(const Table& table, const std::string& column
   std::vector<double> steps;
   for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
   if (steps.empty()) return config::bad_input("one row: a record was expected");
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  out.interval_s = *middle;
+  out.interval_s = median(std::move(steps));
   for (std::size_t i = 1; i < time.size(); ++i) {
     const double step = time[i] - time[i - 1];
     if (!(std::abs(step - out.interval_s) <= kStepTolerance * out.interval_s)) {

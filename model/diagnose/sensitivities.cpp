@@ -11,6 +11,7 @@
 #include "model/diagnose/moving_signals.hpp"
 #include "model/effects/sensitivity.hpp"
 #include "model/measurement_columns.hpp"
+#include "model/median.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -41,10 +42,7 @@ double usual_step_s(const Signals& signals) {
       steps.push_back(time[row] - time[row - 1]);
     }
   }
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + std::ssize(steps) / 2;
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return steps.empty() ? 0.0 : median(std::move(steps));
 }
 
 bool takes_three_levels(const MovingSignal& x) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "config/units.hpp"
+#include "model/median.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -140,10 +141,7 @@ struct Reconstruction {
 /// takes the temperatures of a window's two ends.
 double usual_duration(const Signals& signals) {
   const auto given = signals.signal("duration_s");
-  std::vector<double> durations(given.begin(), given.end());
-  const auto middle = durations.begin() + static_cast<std::ptrdiff_t>(durations.size() / 2);
-  std::nth_element(durations.begin(), middle, durations.end());
-  return std::max(*middle, 1.0);
+  return std::max(median({given.begin(), given.end()}), 1.0);
 }
 
 /// The same columns with those of the memory's beginnings after them.

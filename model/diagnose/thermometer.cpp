@@ -10,6 +10,7 @@
 #include "config/units.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "model/fit.hpp"
+#include "model/median.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -68,10 +69,9 @@ std::vector<Dwell> stuck_stretches(std::span<const double> readings,
   }
   const bool fine = static_cast<double>(repeats) <= kMostRepeats * static_cast<double>(others);
   if (long_ones.empty() || steps.size() < kFewestRows || !fine) return {};
-  const auto middle = steps.begin() + std::ssize(steps) / 2;
-  std::nth_element(steps.begin(), middle, steps.end());
+  const double usual = median(std::move(steps));
   std::erase_if(long_ones, [&](const Dwell& d) {
-    return !(std::abs(readings[d.end] - d.reading) > kJump * *middle);
+    return !(std::abs(readings[d.end] - d.reading) > kJump * usual);
   });
   return long_ones;
 }

@@ -12,6 +12,7 @@
 #include "model/design.hpp"
 #include "model/diagnose/thermometer.hpp"
 #include "model/measurement_columns.hpp"
+#include "model/median.hpp"
 #include "model/row_order.hpp"
 #include "model/signals.hpp"
 #include "model/stated_errors.hpp"
@@ -129,12 +130,7 @@ RowTimes times_of(const TextColumn& runs, std::vector<double> time, std::vector<
     for (double& centre : out.centre) centre *= kUntimedWindow_s;
     return out;
   }
-  double usual = kUntimedWindow_s;
-  if (!steps.empty()) {
-    const auto middle = steps.begin() + std::ssize(steps) / 2;
-    std::nth_element(steps.begin(), middle, steps.end());
-    usual = *middle;
-  }
+  const double usual = steps.empty() ? kUntimedWindow_s : median(std::move(steps));
   out.duration.resize(n, 0.0);
   for (double& d : out.duration) d = d > 0.0 ? d : usual;
   for (std::size_t i = 1; i < n; ++i) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "config/units.hpp"
+#include "model/median.hpp"
 
 namespace fogbench::model::effects {
 namespace {
@@ -28,12 +29,6 @@ constexpr double kLeastGap_s = 10.0;
 /// nearly a mean of its neighbours.
 constexpr std::array<double, 2> kBeginnings = {-1.0, 1.0};
 
-double middle_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// First rows after a gap that is longer than usual; none where that is not known.
 std::vector<std::size_t> rows_after_gaps(const Signals& signals) {
   if (!signals.available("time_s")) return {};
@@ -53,7 +48,7 @@ std::vector<std::size_t> rows_after_gaps(const Signals& signals) {
     }
   }
   if (rows.empty()) return {};
-  const double most = middle_of(gaps) + std::max(kMissingStep * middle_of(steps), kLeastGap_s);
+  const double most = median(gaps) + std::max(kMissingStep * median(steps), kLeastGap_s);
   std::vector<std::size_t> after;
   for (std::size_t i = 0; i < rows.size() && after.size() <= kMostGaps; ++i) {
     if (gaps[i] > most) after.push_back(rows[i]);
