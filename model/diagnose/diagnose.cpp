@@ -15,6 +15,7 @@
 #include "model/diagnose/formula_search.hpp"
 #include "model/diagnose/heldout.hpp"
 #include "model/diagnose/next_measurement.hpp"
+#include "model/diagnose/refit_gates.hpp"
 #include "model/diagnose/thermometer.hpp"
 #include "model/diagnose/verdict_text.hpp"
 #include "model/diagnose/working_table.hpp"
@@ -30,8 +31,6 @@ using Eigen::VectorXd;
 // What was found explains the table when rows left out are missed by no more than this many noise
 // floors: the rest of a fit that was made without them, and chance, take less.
 constexpr double kFarFromFloor = 1.6;
-// An effect that is there makes predictions of rows left out no worse than this, chance included.
-constexpr double kWorse = 1.05;
 
 std::string name_of_parameter(const Candidate& candidate) {
   return candidate.parameter_name.empty() ? std::string(candidate.parameter->name)
@@ -121,7 +120,7 @@ class Work {
     search_options.seed = options_.seed;
     search_options.refit = [&](const std::vector<Found>& named) {
       climb_ladder(*library, named);
-      return not_identified(*library);
+      return refused_by_refit(d_.missing, d_.ladder, *library);
     };
     SearchResult found = search(input_of_search, search_options);
     take_over(found);
@@ -185,27 +184,6 @@ class Work {
     return heldout_rms(table_.bench_with_history(), table_.windows(), fit.fitted, fit.noise.noise);
   }
 
-  /// The last found effect of which the refit leaves no coefficient beyond its expanded
-  /// uncertainty, or whose rung of the ladder predicts left-out rows worse than the one below.
-  std::optional<Refused> not_identified(const Library& library) const {
-    for (std::size_t i = d_.missing.size(); i-- > 0;) {
-      const MissingEffect& missing = d_.missing[i];
-      bool stands = false, known = false;
-      for (const Estimate& e : missing.estimates) {
-        if (e.name == missing.inner_name || !std::isfinite(e.standard_error)) continue;
-        known = true;
-        stands = stands || std::abs(e.value) > e.coverage_factor * e.standard_error;
-      }
-      if (known && !stands) return Refused{i, Refusal::kNotDistinguished};
-      // With a slow effect the wandering of the noise makes that a matter of chance.
-      const bool slow = library.candidates[missing.found.candidate].slow;
-      if (!slow && missing.heldout_rms_after > kWorse * d_.ladder[i].heldout_rms) {
-        return Refused{i, Refusal::kNotPredicting};
-      }
-    }
-    return {};
-  }
-
   /// Refits and predicts held-out blocks with one effect more each time. The RMS is that of least
   /// squares, so that it never rises with a term more.
   void climb_ladder(const Library& library, const std::vector<Found>& found) {
@@ -246,42 +224,7 @@ class Work {
       d_.missing.push_back(std::move(missing));
     }
     d_.noise = d_.after.noise.noise;
-    for (MissingEffect& missing : d_.missing) estimate(missing);
-  }
-
-  /// Coefficients and inner parameter of the last refit. Where the two are one number in these data
-  /// (a saturation that hardly bends), the coefficients are those at this value of the parameter.
-  void estimate(MissingEffect& missing) const {
-    const std::vector<Estimate>& all = d_.after.estimates;
-    std::vector<Index> at;  // in the covariance, which holds what is free
-    Index free = 0, inner = -1;
-    bool stands = false;
-    for (const Estimate& e : all) {
-      const bool its = std::any_of(
-          missing.terms.begin(), missing.terms.end(),
-          [&](const std::string& id) { return e.name == id || e.name.starts_with(id + "."); });
-      if (its) {
-        missing.estimates.push_back(e);
-        at.push_back(e.held ? -1 : free);
-        const bool is_inner = e.name == missing.inner_name;
-        if (is_inner) inner = at.back();
-        stands = stands || (!is_inner && std::abs(e.value) > e.coverage_factor * e.standard_error);
-      }
-      free += e.held ? 0 : 1;
-    }
-    const MatrixXd& covariance = d_.after.covariance;
-    if (stands || inner < 0 || inner >= covariance.rows()) return;
-    const double variance = covariance(inner, inner);
-    if (!(variance > 0.0)) return;
-    missing.inner_open = true;
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      if (at[i] < 0) continue;
-      const double shared = covariance(at[i], inner);
-      missing.estimates[i].standard_error =
-          at[i] == inner
-              ? kMissing
-              : std::sqrt(std::max(0.0, covariance(at[i], at[i]) - shared * shared / variance));
-    }
+    for (MissingEffect& missing : d_.missing) take_estimates(d_.after, missing);
   }
 
   /// What the search says beside what is in the ladder already.

@@ -1,0 +1,74 @@
+#include "model/diagnose/refit_gates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fogbench::model {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+// An effect that is there makes predictions of rows left out no worse than this, chance included.
+constexpr double kWorse = 1.05;
+
+bool stands(const Estimate& e) {
+  return std::abs(e.value) > e.coverage_factor * e.standard_error;
+}
+
+}  // namespace
+
+void take_estimates(const FitResult& refit, MissingEffect& missing) {
+  std::vector<Index> at;  // in the covariance, which holds what is free
+  Index free = 0, inner = -1;
+  bool any_stands = false;
+  for (const Estimate& e : refit.estimates) {
+    const bool its = std::any_of(
+        missing.terms.begin(), missing.terms.end(),
+        [&](const std::string& id) { return e.name == id || e.name.starts_with(id + "."); });
+    if (its) {
+      missing.estimates.push_back(e);
+      at.push_back(e.held ? -1 : free);
+      if (e.name == missing.inner_name) {
+        inner = at.back();
+      } else {
+        any_stands = any_stands || stands(e);
+      }
+    }
+    free += e.held ? 0 : 1;
+  }
+  const MatrixXd& covariance = refit.covariance;
+  if (any_stands || inner < 0 || inner >= covariance.rows()) return;
+  const double variance = covariance(inner, inner);
+  if (!(variance > 0.0)) return;
+  missing.inner_open = true;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (at[i] < 0) continue;
+    const double shared = covariance(at[i], inner);
+    const double left = covariance(at[i], at[i]) - shared * shared / variance;
+    missing.estimates[i].standard_error =
+        at[i] == inner ? kMissing : std::sqrt(std::max(0.0, left));
+  }
+}
+
+std::optional<Refused> refused_by_refit(const std::vector<MissingEffect>& missing,
+                                        const std::vector<LadderStep>& ladder,
+                                        const Library& library) {
+  for (std::size_t i = missing.size(); i-- > 0;) {
+    bool any_stands = false, known = false;
+    for (const Estimate& e : missing[i].estimates) {
+      if (e.name == missing[i].inner_name || !std::isfinite(e.standard_error)) continue;
+      known = true;
+      any_stands = any_stands || stands(e);
+    }
+    if (known && !any_stands) return Refused{i, Refusal::kNotDistinguished};
+    // With a slow effect the wandering of the noise makes that a matter of chance.
+    const bool slow = library.candidates[missing[i].found.candidate].slow;
+    if (!slow && missing[i].heldout_rms_after > kWorse * ladder[i].heldout_rms) {
+      return Refused{i, Refusal::kNotPredicting};
+    }
+  }
+  return {};
+}
+
+}  // namespace fogbench::model
