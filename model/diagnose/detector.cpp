@@ -55,7 +55,7 @@ bool orthonormalise(Eigen::Ref<MatrixXd> block, const VectorXd& lengths_before) 
 Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const VectorXd& y)
     : shapes_(whitened.shapes()),
       base_(base),
-      library_(whitened.library()),
+      library_(whitened.tried()),
       y_(y),
       nu_(static_cast<double>(base.rows() - base.cols())),
       evidence_(nu_, shapes_.anchor()) {

@@ -46,27 +46,24 @@ MatrixXd joined(const MatrixXd& a, const MatrixXd& b) {
   return out;
 }
 
-/// The effect itself: its own columns, those of its memory's beginnings, the inner parameter's
-/// tangent.
-MatrixXd core_of(const Found& found, const Candidate& candidate) {
-  MatrixXd out = candidate.shapes[found.shape](found.inner);
-  if (!candidate.parameter) return out;
-  const auto own = [&](double inner) -> MatrixXd {
-    return candidate.shapes[found.shape](inner).leftCols(candidate.own);
-  };
-  // An instant moves by rows, everything else smoothly.
-  const double step =
-      candidate.instant() ? 0.5 * candidate.spacing(found.inner) : 1e-3 * std::abs(found.inner);
-  return joined(out, (own(found.inner + step) - own(found.inner - step)) / (2.0 * step));
-}
-
-/// All that a found effect adds to the base: itself, and what its other shapes differ by: which of
-/// them is the real one is not known to the last digit, and the difference is no second effect.
+/// All that a found effect adds to the base: itself with its memory's beginnings, the inner
+/// parameter's tangent, and what its other shapes differ by: which of them is the real one is not
+/// known to the last digit, and the difference is no second effect.
 MatrixXd columns_of(const Found& found, const Candidate& candidate) {
-  MatrixXd out = core_of(found, candidate);
+  const auto own = [&](std::size_t shape, double inner) -> MatrixXd {
+    return candidate.shapes[shape](inner).leftCols(candidate.own);
+  };
+  MatrixXd out = candidate.shapes[found.shape](found.inner);
+  if (candidate.parameter) {
+    // An instant moves by rows, everything else smoothly.
+    const double step =
+        candidate.instant() ? 0.5 * candidate.spacing(found.inner) : 1e-3 * std::abs(found.inner);
+    out =
+        joined(out, (own(found.shape, found.inner + step) - own(found.shape, found.inner - step)) /
+                        (2.0 * step));
+  }
   for (std::size_t other = 0; other < candidate.shapes.size(); ++other) {
-    if (other == found.shape) continue;
-    out = joined(out, candidate.shapes[other](found.inner).leftCols(candidate.own));
+    if (other != found.shape) out = joined(out, own(other, found.inner));
   }
   for (const Block& more : found.more) out = joined(out, candidate.shapes[more.shape](more.inner));
   return out;
@@ -79,6 +76,9 @@ class Search {
 
   SearchResult run() {
     do {
+      // What led beside an effect that has been refused since says nothing of those that come.
+      result_.outside_shape.clear();
+      result_.p_outside = 1.0;
       while (found().size() < options_.most_effects && step()) {
       }
       judge_all();

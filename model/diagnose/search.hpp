@@ -80,7 +80,7 @@ struct SearchInput {
   Eigen::MatrixXd base;
   Eigen::VectorXd y;
 
-  const Library& tried() const { return whitened.library(); }
+  const Library& tried() const { return whitened.tried(); }
   const NoiseShapes& shapes() const { return whitened.shapes(); }
 };
 

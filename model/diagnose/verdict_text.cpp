@@ -120,7 +120,7 @@ std::string refusal_sentence(const Found& refused) {
       return fmt::format("{} is not named: its coefficient cannot be distinguished from zero.",
                          refused.effect);
     case Refusal::kComesAndGoes:
-      return fmt::format("{} is not named: a second jump follows, what came went again.",
+      return fmt::format("{} is not named: a second jump follows it, what came has gone again.",
                          refused.effect);
     case Refusal::kNotPredicting:
       return fmt::format("{} is not named: it does not predict held-out parts better.",

@@ -19,7 +19,7 @@ class WhitenedLibrary {
   WhitenedLibrary(const NoiseShapes& shapes, const Library& library);
 
   const NoiseShapes& shapes() const { return shapes_; }
-  const Library& library() const { return library_; }
+  const Library& tried() const { return library_; }
   std::shared_ptr<const Eigen::MatrixXd> under(std::size_t shape) const;
 
   /// A few points of each candidate's grid: enough to see which noise shapes matter.
