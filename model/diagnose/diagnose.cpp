@@ -72,16 +72,29 @@ class Work {
     d_.noise_source = prior_.source;
   }
 
+  /// What was found may be all that made a reading look bad: then that one is believed, and all is
+  /// asked again.
   Result<Diagnosis> run(const Table& input) {
+    auto first = run_without(input, bad_readings(input, model_));
+    if (!first || first->left_out.empty() || first->missing.empty()) return first;
+    std::vector<LeftOut> still = bad_readings(input, unfitted(first->after.fitted));
+    if (still.size() >= first->left_out.size()) return first;
+    return Work(model_, options_).run_without(input, std::move(still));
+  }
+
+ private:
+  std::vector<LeftOut> bad_readings(const Table& input, const config::ModelFile& model) const {
+    if (input.rows() > static_cast<std::size_t>(kMostRowsToDoubt)) return {};
+    auto fitted = fit(input, model, fit_options(true));
+    return fitted ? std::move(fitted->left_out) : std::vector<LeftOut>{};
+  }
+
+  Result<Diagnosis> run_without(const Table& input, std::vector<LeftOut> bad) {
     tell("reading the table", 0.0);
     // A bad reading is not built on. Its other columns stay: histories run through the row.
     std::optional<Table> cleared;
-    if (input.rows() <= static_cast<std::size_t>(kMostRowsToDoubt)) {
-      if (auto first = fit(input, model_, fit_options(true)); first && !first->left_out.empty()) {
-        d_.left_out = std::move(first->left_out);
-        cleared = without_readings(input, model_.observable, d_.left_out);
-      }
-    }
+    d_.left_out = std::move(bad);
+    if (!d_.left_out.empty()) cleared = without_readings(input, model_.observable, d_.left_out);
     auto table = WorkingTable::make(cleared ? *cleared : input, model_, options_.quiet);
     if (!table) return table.error();
     table_ = std::move(*table);
@@ -156,7 +169,6 @@ class Work {
     return std::move(d_);
   }
 
- private:
   void tell(const std::string& part, double share) const {
     if (options_.progress) options_.progress(part, share);
   }

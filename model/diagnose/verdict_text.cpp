@@ -30,7 +30,8 @@ std::string verdict_sentence(const Diagnosis& d) {
       return fmt::format(
           "Nothing is missing that these data can show ({}): what is left, {:.3g} "
           "deg/h RMS, is noise.",
-          probability_text(d.p_adequate), d.before.fit.rms);
+          probability_text(d.p_adequate),
+          d.ladder.empty() ? d.before.fit.rms : d.ladder.back().rms);
     case Verdict::kMissingEffect:
       return fmt::format("Missing: {} ({}).", fmt::join(names_found(d), ", "),
                          probability_text(d.p_adequate));

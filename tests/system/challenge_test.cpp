@@ -108,6 +108,15 @@ TEST_F(ChallengeTest, ADiagnosisIsScored) {
   EXPECT_EQ(fogbench({"reveal", made, "--diagnosis", named, "--answer", hidden}).status, 2);
 }
 
+TEST_F(ChallengeTest, ARowThatOnlyTheMissingEffectMakesLookBadIsBelieved) {
+  // The gradient is gone after the first row: beside the model as it came that row alone is off.
+  const std::string made = make("23");
+  const auto diagnosis =
+      json({"diagnose", made + "/measurements.csv", "--model", made + "/model.json", "--json"});
+  EXPECT_EQ(diagnosis.at("missing").at(0).at("effect"), "temperature_gradient");
+  EXPECT_TRUE(diagnosis.at("left_out").empty()) << diagnosis.at("left_out").dump();
+}
+
 TEST_F(ChallengeTest, WhatWasTamperedWithStaysShut) {
   const std::string made = make("2");
   expect_refused(fogbench({"reveal", made, "--answer", "warmup"}), 3, "warm_up");
