@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 // A rival is dropped when its own world produces the leader's lead in less than this share of
 // draws; a shadow convicts the leader below kOutside.
-constexpr double kRivalKept = 0.05;
+constexpr double kRivalKept = 0.01;
 constexpr double kOutside = 0.004;
 // Each takes a simulation; who needs more has learned that he cannot tell.
 constexpr std::size_t kMostRivals = 8;
