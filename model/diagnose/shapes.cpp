@@ -6,6 +6,7 @@
 #include <string>
 
 #include "config/units.hpp"
+#include "model/effects/history.hpp"
 #include "model/median.hpp"
 
 namespace fogbench::model {
@@ -122,6 +123,14 @@ std::vector<double> acceleration_between_ends(const Signals& signals) {
   return out;
 }
 
+/// The lagged rate from the temperature alone, LPF(dT/dt) = (T - LPF(T)) / tau: no derivative is
+/// taken, so it is good between windows too, where a rate of window means is smeared.
+VectorXd lagged_rate_of_means(const Signals& signals, double tau_s) {
+  using namespace effects;
+  const VectorXd t = signals.signal("temperature_c");
+  return (t - lag(signals, t, tau_s, Gap::kLinear)) * (config::kSecondsPerHour / tau_s);
+}
+
 /// A table with one column made anew. Shared by the shapes that were made of it.
 struct Reconstruction {
   Reconstruction(const Signals& from, const char* column, std::vector<double> values)
@@ -186,6 +195,11 @@ std::vector<Shape> shapes_at_rest(const Effect& effect, const Signals& signals) 
         signals, rate ? kRate : kAcceleration,
         rate ? rate_between_ends(signals) : acceleration_between_ends(signals));
     out.push_back([own, other](double inner) { return own(other->signals, inner); });
+    if (id == "temperature_rate_lagged") {
+      out.push_back([&signals](double tau) -> MatrixXd {
+        return lagged_rate_of_means(signals, tau);
+      });
+    }
     if (id == "temperature_rate") {
       out.push_back([&signals, tau = 0.5 * usual_duration(signals)](double) {
         return find_effect("temperature_rate_lagged")->regressor(signals, std::vector{tau});
