@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/kernels.hpp"
 #include "model/window_geometry.hpp"
 
 namespace fogbench::model {
@@ -59,7 +60,8 @@ class StateSpaceWhitener final : public Whitener {
       for (Eigen::Index i = first; i < last; ++i) {
         const Eigen::VectorXd innovation = out.col(i) * deviation_[i];
         out.col(i).noalias() = innovation + state * phi(i);
-        advance(state, i, innovation);
+        state.leftCols(terms_) *= geometry_->decay.col(i).matrix().asDiagonal();
+        state.noalias() += innovation * gain_.col(i).transpose();
       }
     });
     return out.transpose();
@@ -100,13 +102,13 @@ class StateSpaceWhitener final : public Whitener {
 
   /// One column of the data a row.
   void whiten_transposed(Eigen::MatrixXd& block) const {
+    const Kernels::Filter filter{.phi = geometry_->phi.data(),
+                                 .decay = geometry_->decay.data(),
+                                 .gain = gain_.data(),
+                                 .deviation = deviation_.data(),
+                                 .terms = terms_};
     for_each_run([&](Eigen::Index first, Eigen::Index last) {
-      Eigen::MatrixXd state = Eigen::MatrixXd::Zero(block.rows(), terms_ + 1);
-      for (Eigen::Index i = first; i < last; ++i) {
-        block.col(i).noalias() -= state * phi(i);
-        advance(state, i, block.col(i));
-        block.col(i) /= deviation_[i];
-      }
+      kernels().innovations(filter, first, last, block.rows(), block.data());
     });
   }
 
@@ -116,15 +118,6 @@ class StateSpaceWhitener final : public Whitener {
       run(static_cast<Eigen::Index>(geometry_->run_begin[k]),
           static_cast<Eigen::Index>(geometry_->run_begin[k + 1]));
     }
-  }
-
-  template <class Innovation>
-  void advance(Eigen::MatrixXd& state, Eigen::Index i, const Innovation& innovation) const {
-    // One pass for each state: this is the inner loop of every fit.
-    for (Eigen::Index j = 0; j < terms_; ++j) {
-      state.col(j) = geometry_->decay(j, i) * state.col(j) + gain_(j, i) * innovation;
-    }
-    state.col(terms_) += gain_(terms_, i) * innovation;
   }
 
   void filter_run(Eigen::Index first, Eigen::Index last) {

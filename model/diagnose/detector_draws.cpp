@@ -75,7 +75,9 @@ Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate) cons
   draws.scores.resize(views_.size());
   in_parallel(views_.size(), [&](std::size_t v) {
     draws.residuals[v] = views_[v]->project(views_[v]->whitener->whiten(noise)).cast<float>();
-    draws.scores[v].noalias() = views_[v]->u.transpose() * draws.residuals[v];
+    const Eigen::MatrixXf &u = views_[v]->u, &residuals = draws.residuals[v];
+    draws.scores[v].resize(u.cols(), count);
+    kernels().scores(u.data(), residuals.data(), u.rows(), u.cols(), count, draws.scores[v].data());
   });
   return draws;
 }

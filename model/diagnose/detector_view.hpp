@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/diagnose/detector.hpp"
+#include "model/kernels.hpp"
 
 namespace fogbench::model {
 
@@ -46,7 +47,7 @@ struct Detector::View {
   double log_prior = 0.0;
 
   Eigen::MatrixXd project(Eigen::MatrixXd whitened) const {
-    whitened.noalias() -= q * (q.transpose() * whitened).eval();
+    kernels().project(q.data(), q.rows(), q.cols(), whitened.data(), whitened.cols());
     return whitened;
   }
 };
