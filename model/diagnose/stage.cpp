@@ -83,8 +83,8 @@ Index Stage::leader(const std::vector<std::size_t>& refused) const {
 double Stage::plausible(Index world, double lag, const std::vector<Index>& others) {
   if (noise_.count == 0) noise_ = detector_.draw(kRivalDraws, seed_ + 1, best(effects_));
   const auto among = &others == &effects_ ? Detector::Among::kEffects : Detector::Among::kAll;
-  const MatrixXd leads =
-      calibration_.lead(detector_.lambdas(noise_, detector_.fitted_signal(world), among));
+  const MatrixXd leads = calibration_.lead(
+      detector_.lambdas(noise_, detector_.fitted_signal(world) / larger_noise(world), among));
   Index reached = 0;
   for (Index b = 0; b < leads.cols(); ++b) {
     double top = leads(world, b);
@@ -92,6 +92,15 @@ double Stage::plausible(Index world, double lag, const std::vector<Index>& other
     reached += top - leads(world, b) >= lag ? 1 : 0;
   }
   return static_cast<double>(reached) / static_cast<double>(leads.cols());
+}
+
+double Stage::larger_noise(Index world) const {
+  const double free = static_cast<double>(base_.rows() - base_.cols());
+  const double own =
+      static_cast<double>(detector_.best_block(world).width) + (candidate(world).parameter ? 1 : 0);
+  const VectorXd& lambda = detector_.observed();
+  const double behind = std::max(lambda[best(effects_)] - lambda[world], 0.0);
+  return std::sqrt(std::exp(behind / free) * free / std::max(free - own, 1.0));
 }
 
 bool Stage::at_edge(Index c) const {

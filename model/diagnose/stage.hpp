@@ -54,6 +54,10 @@ class Stage {
   std::vector<Bound> bounds() const;
 
  private:
+  /// How much larger the noise must be where `world` is the truth than the draws have it, which
+  /// were made beside the leader: by what the leader explains more, and for the parameters fitted.
+  double larger_noise(Eigen::Index world) const;
+
   const SearchInput& input_;
   Eigen::MatrixXd base_;
   std::uint64_t seed_;
