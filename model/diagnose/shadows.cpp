@@ -21,8 +21,9 @@ constexpr double kMostBells = 120.0;                      // of one width
 constexpr double kRowsPerSquare = 6.0, kSquareRatio = 1.08;
 constexpr int kSquarePhases = 8;  // of half a period
 
+/// `others`: what the field's coefficient may depend on beside the temperature.
 void add_field_shadows(LibraryBuilder& builder, const MovingSignal& h,
-                       const std::optional<MovingSignal>& rate) {
+                       const std::vector<MovingSignal>& others) {
   const VectorXd u = h.value / kFieldUnitUt;
   const VectorXd size = u.cwiseAbs();
   const VectorXd going = direction(builder.signals(), h.value);
@@ -37,7 +38,10 @@ void add_field_shadows(LibraryBuilder& builder, const MovingSignal& h,
   builder.add_shadow("direction of the sweep x |" + h.name + "|", going.cwiseProduct(size));
   builder.add_shadow("direction of the sweep x " + h.name + "^3",
                      going.cwiseProduct(u.array().cube().matrix()));
-  if (rate) builder.add_shadow(h.name + " x " + rate->name, u.cwiseProduct(rate->value));
+  for (const MovingSignal& other : others) {
+    builder.add_shadow(h.name + " x " + other.name, u.cwiseProduct(other.value));
+    builder.add_shadow(h.name + "^2 x " + other.name, u.cwiseAbs2().cwiseProduct(other.value));
+  }
   Candidate wave{.name = "sine of " + h.name};
   for (const double periods : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0}) {
     Eigen::MatrixXd columns(u.size(), 2);
@@ -150,8 +154,13 @@ void add_shadows(LibraryBuilder& builder) {
     return moving_signal(signals, name, least_excitation(name));
   };
   const auto rate = excited("temperature_rate_c_per_h");
+  std::vector<MovingSignal> modulating;
+  for (const char* name :
+       {"temperature_rate_c_per_h", "temperature_gradient_c", "time_since_start_s"}) {
+    if (auto other = excited(name)) modulating.push_back(std::move(*other));
+  }
   for (const char* axis : {"field_x_ut", "field_y_ut", "field_z_ut"}) {
-    if (const auto h = excited(axis)) add_field_shadows(builder, *h, rate);
+    if (const auto h = excited(axis)) add_field_shadows(builder, *h, modulating);
   }
   if (const auto t = excited("temperature_c")) add_temperature_shadows(builder, *t);
   if (rate) {
