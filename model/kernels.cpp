@@ -57,13 +57,17 @@ const Kernels kAvx2Kernels = {scores, project, innovations};
 extern const Kernels kAvx2Kernels;
 #endif
 
-const Kernels& kernels() {
+const Kernels& portable_kernels() {
   static const Kernels portable = {scores, project, innovations};
+  return portable;
+}
+
+const Kernels& kernels() {
 #ifdef FOGBENCH_HAS_AVX2
   static const bool wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   if (wide) return kAvx2Kernels;
 #endif
-  return portable;
+  return portable_kernels();
 }
 #endif
 

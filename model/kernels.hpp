@@ -27,7 +27,8 @@ struct Kernels {
                       std::ptrdiff_t count, double* data);
 };
 
-/// For this machine.
+/// For this machine, and for any.
 const Kernels& kernels();
+const Kernels& portable_kernels();
 
 }  // namespace fogbench::model
