@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "model/reduction.hpp"
+#include "model/shape_grid.hpp"
 #include "model/window_geometry.hpp"
 
 namespace fogbench::model {
@@ -49,7 +50,7 @@ double log_gamma_p(double a, double x) {
 struct Solution {
   MatrixXd r;  // triangle of the whitened [X y]
   double residual_squares = 0.0;
-  double log_weight = 0.0;  // marginal over N
+  double log_weight = 0.0;  // marginal over N; without the prior of the shape
 };
 
 class Problem {
@@ -131,10 +132,10 @@ class Problem {
 
 /// Climbs from the best shape of the grid with a shrinking cross of trial points in the logarithms
 /// of B/N and K/N. A coefficient that is zero there stays zero.
-NoiseCoefficients refine(const NoiseShapes& shapes, const Problem& problem, NoiseCoefficients best,
-                         double best_weight) {
-  double step_b = std::log(shapes.step_of_b()) / 2.0;
-  double step_k = std::log(shapes.step_of_k()) / 2.0;
+NoiseCoefficients refine(const NoiseShapes& shapes, const ShapeGrid& grid, const Problem& problem,
+                         NoiseCoefficients best, double best_weight) {
+  double step_b = grid.step_of_b() / 2.0;
+  double step_k = grid.step_of_k() / 2.0;
   constexpr int kHalvings = 4;
   for (int level = 0; level < kHalvings; ++level, step_b /= 2.0, step_k /= 2.0) {
     const NoiseCoefficients centre = best;
@@ -151,7 +152,7 @@ NoiseCoefficients refine(const NoiseShapes& shapes, const Problem& problem, Nois
         continue;
       }
       const double weight =
-          problem.solve(*shapes.whitener(trial)).log_weight + shapes.log_prior(trial);
+          problem.solve(*shapes.whitener(trial)).log_weight + grid.log_prior(trial);
       if (weight > best_weight) {
         best = trial;
         best_weight = weight;
@@ -250,21 +251,27 @@ Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const Vector
   result.noise.anchored = shapes.anchor() > 0.0;
   const bool too_few = !result.noise.anchored && problem.nu() < kFewestRowsForNoise;
 
+  ShapeGrid grid(shapes);
   std::vector<Solution> solutions;
+  std::vector<double> likelihood;  // of each shape
+  do {
+    for (std::size_t i = solutions.size(); i < (too_few ? 1 : grid.size()); ++i) {
+      solutions.push_back(problem.solve(*grid.whitener(i)));
+      likelihood.push_back(solutions[i].log_weight);
+    }
+  } while (!too_few && grid.refine({likelihood}));
   std::size_t best = 0;
   double best_without_b = -std::numeric_limits<double>::infinity();
   double best_without_k = best_without_b;
-  for (std::size_t i = 0; i < (too_few ? 1 : shapes.size()); ++i) {
-    solutions.push_back(problem.solve(*shapes.whitener(i)));
-    const double likelihood = solutions[i].log_weight;
-    solutions[i].log_weight += shapes.log_prior(i);
+  for (std::size_t i = 0; i < solutions.size(); ++i) {
+    solutions[i].log_weight += grid.log_prior(i);
     if (solutions[i].log_weight > solutions[best].log_weight) best = i;
-    const NoiseCoefficients& shape = shapes.shape(i);
+    const NoiseCoefficients& shape = grid.shape(i);
     if (shape.bias_instability_deg_per_h == 0.0) {
-      best_without_b = std::max(best_without_b, likelihood);
+      best_without_b = std::max(best_without_b, likelihood[i]);
     }
     if (shape.rate_random_walk_deg_per_h_per_sqrt_h == 0.0) {
-      best_without_k = std::max(best_without_k, likelihood);
+      best_without_k = std::max(best_without_k, likelihood[i]);
     }
   }
 
@@ -286,7 +293,7 @@ Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const Vector
     const VectorXd beta = problem.beta(solutions[i]);
     mean += weight * beta;
     second += weight * white2 * problem.unscaled_covariance(solutions[i]);
-    result.noise.plausible.emplace_back(scaled(shapes.shape(i), std::sqrt(white2)), weight);
+    result.noise.plausible.emplace_back(scaled(grid.shape(i), std::sqrt(white2)), weight);
   }
   for (std::size_t i = 0; i < solutions.size(); ++i) {
     const double raw = std::exp(solutions[i].log_weight - top);
@@ -303,7 +310,7 @@ Result<GlsResult> gls(const NoiseShapes& shapes, const MatrixXd& x, const Vector
   result.residual = y - x * result.beta;
 
   const NoiseCoefficients shape =
-      too_few ? shapes.shape(0) : refine(shapes, problem, shapes.shape(best), top);
+      too_few ? shapes.shape(0) : refine(shapes, grid, problem, grid.shape(best), top);
   const auto unit = shapes.whitener(shape);
   const Solution at_best = problem.solve(*unit);
   const double white = std::sqrt(problem.best_white_squared(at_best));

@@ -7,9 +7,10 @@
 // N is integrated out with a prior flat in log N above the anchor: the median of
 // standard error^2 x duration where the windows state one, else zero. The stated error holds white
 // noise only, so the real N may lie above it, never below. The shapes form a grid in the logarithms
-// of B and K plus the corners where they are zero, weighed by what instruments do
-// (noise_prior.hpp). beta and its covariance are averaged over the grid with the posterior weights,
-// so that not knowing the noise widens the intervals.
+// of B and K plus the corners where they are zero, as fine as their posterior asks for
+// (shape_grid.hpp), weighed by what instruments do (noise_prior.hpp). beta and its covariance are
+// averaged over the grid with the posterior weights, so that not knowing the noise widens the
+// intervals.
 
 #include <Eigen/Core>
 #include <memory>
@@ -25,8 +26,16 @@ struct WindowGeometry;
 /// Probability of a normal variable within two standard deviations.
 inline constexpr double kTwoSigma = 0.9544997361036416;
 
-/// The grid of noise shapes on given windows, in units of N. Whiteners are made once and kept where
-/// the rows are few, so that hundreds of candidate models on one table cost little each.
+/// Values of B/N or K/N that are tried: zero, and `count` from `least` on, exp(step) apart.
+struct RatioAxis {
+  double least = 1.0, step = 1.0;
+  int count = 1;
+  double log_prior_of_zero = 0.0;  ///< of all that is too small to show
+};
+
+/// The grid of noise shapes on given windows, in units of N; shape_grid.hpp makes it finer where
+/// that is called for. Whiteners are made once and kept where the rows are few, so that hundreds of
+/// candidate models on one table cost little each.
 class NoiseShapes {
  public:
   /// Errors as check_windows.
@@ -34,33 +43,25 @@ class NoiseShapes {
 
   std::size_t size() const { return shapes_.size(); }
   Eigen::Index rows() const { return rows_; }
-  /// With N = 1 deg/sqrt(h). Shape 0 is white.
+  /// With N = 1 deg/sqrt(h). Shape 0 is white; the values of K run first.
   const NoiseCoefficients& shape(std::size_t i) const { return shapes_[i]; }
-  double log_prior(std::size_t i) const { return log_prior_[i]; }
-  /// Of any shape, per cell of the grid: comparable with that of the grid's own.
-  double log_prior(const NoiseCoefficients& shape) const;
+  const RatioAxis& b_over_n() const { return b_over_n_; }
+  const RatioAxis& k_over_n() const { return k_over_n_; }
   const NoisePrior& prior() const { return prior_; }
   std::shared_ptr<const Whitener> whitener(std::size_t i) const;
   /// Whitener of any noise on the same windows.
   std::unique_ptr<Whitener> whitener(const NoiseCoefficients& noise) const;
   /// Lower bound of N from the stated standard errors or the prior; 0 where there are none.
   double anchor() const { return anchor_; }
-  /// Ratio of neighbouring non-zero B and K values of the grid.
-  double step_of_b() const { return step_of_b_; }
-  double step_of_k() const { return step_of_k_; }
 
  private:
   std::shared_ptr<const WindowGeometry> geometry_;
   NoisePrior prior_;
   std::vector<NoiseCoefficients> shapes_;
-  std::vector<double> log_prior_;
+  RatioAxis b_over_n_, k_over_n_;
   std::vector<std::shared_ptr<const Whitener>> kept_;
   Eigen::Index rows_ = 0;
   double anchor_ = 0.0;
-  double step_of_b_ = 1.0;
-  double step_of_k_ = 1.0;
-  double log_prior_without_b_ = 0.0;
-  double log_prior_without_k_ = 0.0;
 };
 
 /// log of the likelihood of a shape's whitened residual squares, N integrated out above the anchor:

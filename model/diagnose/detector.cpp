@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "model/diagnose/detector_view.hpp"
+#include "model/shape_grid.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -60,8 +61,9 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
       nu_(static_cast<double>(base.rows() - base.cols())),
       evidence_(nu_, shapes_.anchor()) {
   const std::size_t blocks = count_blocks(library_);
-  std::vector<std::shared_ptr<View>> all(shapes_.size());
-  std::vector<double> null_likelihood(shapes_.size()), best_likelihood(shapes_.size());
+  ShapeGrid grid(shapes_);
+  std::vector<std::shared_ptr<View>> all;
+  std::vector<double> null_likelihood, best_likelihood;
 
   // The best of the candidates' blocks, made orthonormal in place.
   const auto explained = [](const View& view, MatrixXd& z, const VectorXd& lengths,
@@ -79,25 +81,37 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
 
   // Most noise shapes are hopeless, with each candidate as without: a sample of the candidates
   // tells.
-  in_parallel(shapes_.size(), [&](std::size_t k) {
-    auto view = std::make_shared<View>();
-    view->shape = k;
-    view->whitener = shapes_.whitener(k);
-    const MatrixXd wx = view->whitener->whiten(base_);
-    const Eigen::HouseholderQR<MatrixXd> qr(wx);
-    view->q = qr.householderQ() * MatrixXd::Identity(wx.rows(), wx.cols());
-    view->log_prior = shapes_.log_prior(k) - 0.5 * view->whitener->log_determinant() -
-                      qr.matrixQR().diagonal().cwiseAbs().array().log().sum();
-    view->residual = view->project(view->whitener->whiten(y_));
-    view->squares = view->residual.squaredNorm();
-    null_likelihood[k] = view->log_prior + evidence_(view->squares);
-    MatrixXd z = whitened.sample_under(k);
-    const VectorXd lengths = z.colwise().norm();
-    z = view->project(std::move(z));
-    const double most = explained(*view, z, lengths, whitened.sample(), nullptr);
-    best_likelihood[k] = view->log_prior + evidence_(view->squares - most);
-    all[k] = std::move(view);
-  });
+  do {
+    const std::size_t first = all.size();
+    all.resize(grid.size());
+    null_likelihood.resize(grid.size());
+    best_likelihood.resize(grid.size());
+    in_parallel(grid.size() - first, [&](std::size_t i) {
+      const std::size_t k = first + i;
+      auto view = std::make_shared<View>();
+      view->whitener = grid.whitener(k);
+      const MatrixXd wx = view->whitener->whiten(base_);
+      const Eigen::HouseholderQR<MatrixXd> qr(wx);
+      view->q = qr.householderQ() * MatrixXd::Identity(wx.rows(), wx.cols());
+      view->log_prior = -0.5 * view->whitener->log_determinant() -
+                        qr.matrixQR().diagonal().cwiseAbs().array().log().sum();
+      view->residual = view->project(view->whitener->whiten(y_));
+      view->squares = view->residual.squaredNorm();
+      null_likelihood[k] = view->log_prior + evidence_(view->squares);
+      MatrixXd z = view->whitener->whiten(whitened.sampled());
+      const VectorXd lengths = z.colwise().norm();
+      z = view->project(std::move(z));
+      const double most = explained(*view, z, lengths, whitened.sample(), nullptr);
+      best_likelihood[k] = view->log_prior + evidence_(view->squares - most);
+      all[k] = std::move(view);
+    });
+  } while (grid.refine({null_likelihood, best_likelihood}));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double prior = grid.log_prior(k);
+    all[k]->log_prior += prior;
+    null_likelihood[k] += prior;
+    best_likelihood[k] += prior;
+  }
   const auto merit_of = [&](std::size_t k) {
     const double null = *std::max_element(null_likelihood.begin(), null_likelihood.end());
     const double best = *std::max_element(best_likelihood.begin(), best_likelihood.end());
@@ -110,7 +124,7 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
   in_parallel(hopeful.size(), [&](std::size_t i) {
     const std::size_t k = hopeful[i];
     View& view = *all[k];
-    MatrixXd z = *whitened.under(k);
+    MatrixXd z = *whitened.under(grid.shape(k), *view.whitener);
     const VectorXd lengths = z.colwise().norm();
     z = view.project(std::move(z));
     view.alive.reserve(blocks);

@@ -37,7 +37,6 @@ inline double log_sum_exp(const std::vector<double>& values) {
 }
 
 struct Detector::View {
-  std::size_t shape = 0;
   std::shared_ptr<const Whitener> whitener;
   Eigen::MatrixXd q;        // basis of the whitened base
   Eigen::MatrixXf u;        // candidates' columns: whitened, projected, orthonormal within a block

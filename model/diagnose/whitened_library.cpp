@@ -11,7 +11,7 @@ constexpr std::size_t kMostBytes = 400'000'000;
 }  // namespace
 
 WhitenedLibrary::WhitenedLibrary(const NoiseShapes& shapes, const Library& library)
-    : shapes_(shapes), library_(library), kept_(shapes.size()) {
+    : shapes_(shapes), library_(library) {
   std::vector<Index> columns;
   for (const Candidate& candidate : library.candidates) {
     if (candidate.blocks.empty()) continue;
@@ -29,23 +29,22 @@ WhitenedLibrary::WhitenedLibrary(const NoiseShapes& shapes, const Library& libra
   sampled_ = library.columns(Eigen::all, columns);
 }
 
-std::shared_ptr<const MatrixXd> WhitenedLibrary::under(std::size_t shape) const {
+std::shared_ptr<const MatrixXd> WhitenedLibrary::under(const NoiseCoefficients& shape,
+                                                       const Whitener& whitener) const {
+  const std::pair key{shape.bias_instability_deg_per_h,
+                      shape.rate_random_walk_deg_per_h_per_sqrt_h};
   {
     const std::lock_guard lock(mutex_);
-    if (kept_[shape]) return kept_[shape];
+    if (const auto known = kept_.find(key); known != kept_.end()) return known->second;
   }
-  auto made = std::make_shared<const MatrixXd>(shapes_.whitener(shape)->whiten(library_.columns));
+  auto made = std::make_shared<const MatrixXd>(whitener.whiten(library_.columns));
   const std::size_t size = sizeof(double) * static_cast<std::size_t>(made->size());
   const std::lock_guard lock(mutex_);
-  if (!kept_[shape] && bytes_ + size <= kMostBytes) {
-    kept_[shape] = made;
+  if (!kept_.contains(key) && bytes_ + size <= kMostBytes) {
+    kept_[key] = made;
     bytes_ += size;
   }
   return made;
-}
-
-MatrixXd WhitenedLibrary::sample_under(std::size_t shape) const {
-  return shapes_.whitener(shape)->whiten(sampled_);
 }
 
 }  // namespace fogbench::model

@@ -3,8 +3,10 @@
 // are kept from one step of a search to the next, as far as a bounded memory goes.
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "model/diagnose/library.hpp"
@@ -20,12 +22,14 @@ class WhitenedLibrary {
 
   const NoiseShapes& shapes() const { return shapes_; }
   const Library& tried() const { return library_; }
-  std::shared_ptr<const Eigen::MatrixXd> under(std::size_t shape) const;
+  /// `whitener`: of this shape.
+  std::shared_ptr<const Eigen::MatrixXd> under(const NoiseCoefficients& shape,
+                                               const Whitener& whitener) const;
 
   /// A few points of each candidate's grid: enough to see which noise shapes matter.
   const std::vector<Block>& sample() const { return sample_; }
-  /// Their columns.
-  Eigen::MatrixXd sample_under(std::size_t shape) const;
+  /// Their columns, as they are.
+  const Eigen::MatrixXd& sampled() const { return sampled_; }
 
  private:
   const NoiseShapes& shapes_;
@@ -33,7 +37,8 @@ class WhitenedLibrary {
   std::vector<Block> sample_;  // `first` in the sample
   Eigen::MatrixXd sampled_;
   mutable std::mutex mutex_;
-  mutable std::vector<std::shared_ptr<const Eigen::MatrixXd>> kept_;
+  /// By B/N and K/N.
+  mutable std::map<std::pair<double, double>, std::shared_ptr<const Eigen::MatrixXd>> kept_;
   mutable std::size_t bytes_ = 0;
 };
 
