@@ -155,8 +155,7 @@ Result<Comparison> compare(const Table& table, const config::ModelFile& model,
   const bool independent =
       options.noise == FitOptions::Noise::kIndependent || !options.weight_by.empty();
   if (look == LookForEffects::kYes && !out.as_is && !independent) {
-    if (const auto first = first_look(table, out.fit.fitted, options.prior);
-        first && first->looked) {
+    if (const auto first = first_look(table, out.fit, options.prior); first && first->looked) {
       const double p_of_effects = first->p_value();
       const double p_of_regions = std::min(1.0, out.p_adequate / kShareOfRegions);
       if (p_of_effects < p_of_regions) out.looks_like = first->looks_like;

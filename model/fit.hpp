@@ -85,6 +85,11 @@ struct FitResult {
 Result<FitResult> fit(const Table& table, const config::ModelFile& model,
                       const FitOptions& options);
 
+/// The table without the readings that were not believed. Their rows stay: histories run through
+/// them.
+Table without_readings(Table table, const std::string& observable,
+                       const std::vector<LeftOut>& left_out);
+
 /// Values of the model on the table, NaN where a signal is missing. All coefficients must be given.
 /// How an effect's memory began is found from the observable where the table has it, as in a fit;
 /// without it memories begin at rest.

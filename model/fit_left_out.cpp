@@ -25,6 +25,15 @@ std::string name_of_row(const Table& table, std::size_t row) {
 
 }  // namespace
 
+Table without_readings(Table table, const std::string& observable,
+                       const std::vector<LeftOut>& left_out) {
+  const auto given = table.column(observable);
+  std::vector<double> values(given.begin(), given.end());
+  for (const LeftOut& row : left_out) values[row.row] = kMissing;
+  table.set_column(observable, std::move(values));
+  return table;
+}
+
 std::vector<LeftOut> find_left_out(const FitWork& work) {
   std::vector<LeftOut> out;
   const std::vector<std::size_t>& taken = work.observations.taken();

@@ -54,15 +54,6 @@ config::ModelFile extended_by(config::ModelFile model, const Library& library,
   return model;
 }
 
-Table without_readings(Table table, const std::string& observable,
-                       const std::vector<LeftOut>& rows) {
-  const auto given = table.column(observable);
-  std::vector<double> values(given.begin(), given.end());
-  for (const LeftOut& row : rows) values[row.row] = kMissing;
-  table.set_column(observable, std::move(values));
-  return table;
-}
-
 /// The work of one diagnosis, part by part.
 class Work {
  public:

@@ -1,5 +1,7 @@
 #include "model/diagnose/first_look.hpp"
 
+#include <optional>
+
 #include "model/diagnose/adequacy.hpp"
 #include "model/diagnose/base_columns.hpp"
 #include "model/diagnose/stage.hpp"
@@ -38,9 +40,13 @@ FirstLook look_at(const SearchInput& input, const Library& smooth, std::uint64_t
   return out;
 }
 
-Result<FirstLook> first_look(const Table& table, const config::ModelFile& fitted,
-                             const NoisePrior& prior) {
-  const auto working = WorkingTable::make(table, fitted, nullptr);
+Result<FirstLook> first_look(const Table& table, const FitResult& fit, const NoisePrior& prior) {
+  const config::ModelFile& fitted = fit.fitted;
+  std::optional<Table> believed;
+  if (!fit.left_out.empty()) {
+    believed = without_readings(table, fitted.observable, fit.left_out);
+  }
+  const auto working = WorkingTable::make(believed ? *believed : table, fitted, nullptr);
   if (!working) return working.error();
   const Signals signals(working->fine(), fitted.reference_temperature_c);
   const auto base = base_columns(*working, signals, fitted);

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <string>
 
-#include "config/model_file.hpp"
 #include "config/result.hpp"
 #include "model/diagnose/search.hpp"
+#include "model/fit.hpp"
 #include "model/noise_prior.hpp"
 #include "model/table.hpp"
 
@@ -28,18 +28,18 @@ struct FirstLook {
   double p_walk = 1.0;
   std::string looks_like;  ///< what has the least of these
 
-  /// One p-value of all three.
+  /// One p-value of all three, and of the walk, which a diagnosis doubts by itself.
   double p_value() const {
-    return std::min(
-        {1.0, p_effects / kShareOfEffects, p_shapes / kShareOfShapes, p_smooth / kShareOfSmooth});
+    return std::min({1.0, p_effects / kShareOfEffects, p_shapes / kShareOfShapes,
+                     p_smooth / kShareOfSmooth, p_walk});
   }
 };
 
 /// `smooth`: make_smooth_library().
 FirstLook look_at(const SearchInput& input, const Library& smooth, std::uint64_t seed);
 
-/// The same of a table. Errors: those of WorkingTable and of the design.
-Result<FirstLook> first_look(const Table& table, const config::ModelFile& fitted,
-                             const NoisePrior& prior);
+/// The same beside a fit of the table, without the readings that it did not believe. Errors: those
+/// of WorkingTable and of the design.
+Result<FirstLook> first_look(const Table& table, const FitResult& fit, const NoisePrior& prior);
 
 }  // namespace fogbench::model
