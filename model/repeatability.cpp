@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -74,9 +75,11 @@ RunChange change_between(const RunCoefficients& a, const RunCoefficients& b,
   // common scale estimates it.
   const double variance = noise_known ? 1.0 : scaled / (n - 1.0);
   const double gain = variance > 0.0 ? (repeat - scaled) / variance : 0.0;
+  // Where noise is known, two questions share one rate: a common scale, and any change at all.
+  const double questions = noise_known ? 2.0 : 1.0;
   const double p_scale =
       noise_known || gain <= 0.0
-          ? upper_tail_chi2(gain, 1.0)
+          ? std::min(1.0, questions * upper_tail_chi2(gain, 1.0))
           : boost::math::cdf(boost::math::complement(boost::math::fisher_f(1.0, n - 1.0), gain));
   const double p_left = noise_known ? upper_tail_chi2(scaled, n - 1.0) : 1.0;
 
@@ -85,7 +88,7 @@ RunChange change_between(const RunCoefficients& a, const RunCoefficients& b,
                             chi_squared(a, b, change.common_scale - kStep)) /
                            (kStep * kStep);
   change.scale_standard_error = curvature > 0.0 ? std::sqrt(2.0 * variance / curvature) : 0.0;
-  change.p_repeat = noise_known ? upper_tail_chi2(repeat, n) : p_scale;
+  change.p_repeat = noise_known ? std::min(1.0, questions * upper_tail_chi2(repeat, n)) : p_scale;
   change.scale_changed = p_scale < kSignificant;
 
   const std::string yardstick =
