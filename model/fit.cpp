@@ -279,6 +279,7 @@ Result<FitResult> fit(const Table& table, const config::ModelFile& model,
     std::vector<LeftOut> bad = find_left_out(work);
     if (!bad.empty()) return fit_without(work, std::move(bad));
   }
+  if (*coloured && options.doubt_lag) allow_for_lag(work);
   fill_residuals(work);
   if (*coloured) {
     if (Status noise = fill_coloured_noise(work); !noise) return noise.error();

@@ -32,6 +32,7 @@ struct FitOptions {
   bool as_is = false;                       ///< hold every given coefficient, fit nothing
   NoisePrior prior = {};                    ///< of coloured noise
   bool doubt_rows = true;                   ///< look for single bad readings, and leave them out
+  bool doubt_lag = true;                    ///< the thermometer may read late: fit_lag.cpp
   std::vector<std::size_t> leave_out = {};  ///< rows of the table that take no part
 };
 

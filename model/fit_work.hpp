@@ -37,6 +37,10 @@ Linearised linearise(const FitWork& work, const Eigen::MatrixXd& rows);
 
 /// Single rows that the rest of them contradicts.
 std::vector<LeftOut> find_left_out(const FitWork& work);
+/// What an unknown lag of the thermometer may do is added to the covariance, and said where that
+/// matters; nothing where temperature_start_c tells that the temperatures were freed of it.
+/// Precondition: coloured noise.
+void allow_for_lag(FitWork& work);
 /// Predicted values, residuals and their size; needs degrees_of_freedom.
 void fill_residuals(FitWork& work);
 /// Independent noise: sigma is estimated, as a whole or as a factor on the weights.

@@ -165,9 +165,9 @@ class Work {
   }
 
   /// Fits of the bench's rows alone know the static record by what it says of the noise. Bad rows
-  /// have been cleared before.
+  /// have been cleared before; a thermometer that reads late is named beside the effects.
   FitOptions fit_options(bool doubt_rows = false) const {
-    return {.weight_by = {}, .prior = prior_, .doubt_rows = doubt_rows};
+    return {.weight_by = {}, .prior = prior_, .doubt_rows = doubt_rows, .doubt_lag = false};
   }
   /// The search has the record itself among its rows.
   NoisePrior search_prior() const {
