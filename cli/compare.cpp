@@ -55,7 +55,7 @@ void print_ranges(const model::Comparison& c, std::string_view unit) {
                                          {"model", in},
                                          {"residual", in}};
   const bool offsets = !c.regions.empty() && c.regions.front().drift_allowed;
-  if (offsets) columns.push_back({"drift apart", in});
+  if (offsets) columns.push_back({"less drift", in});
   if (c.noise_known) columns.insert(columns.end(), {{"z", ""}, {"p of all", ""}});
   TextTable table(columns);
   constexpr std::size_t kMostRanges = 12;
@@ -94,12 +94,13 @@ void print_text(const model::Comparison& c, const CompareOptions& options, std::
     const config::Rounded r = config::rounded(e.value, e.held ? 0.0 : expanded);
     table.add_row({e.name, r.value, e.held ? "held" : r.uncertainty, e.unit});
   }
-  fmt::print("{}\n", table.text());
+  constexpr std::size_t kLead = 2;  // the verdict, and what carries it
+  for (std::size_t i = 0; i < kLead; ++i) fmt::print("{}\n", c.sentences[i]);
+  fmt::print("Next: {}\n\n{}\n", next_step(c, options), table.text());
   for (const std::string& warning : c.fit.warnings) fmt::print("warning: {}\n", warning);
   print_ranges(c, unit);
-  for (const std::string& sentence : c.sentences) fmt::print("{}\n", sentence);
+  for (std::size_t i = kLead; i < c.sentences.size(); ++i) fmt::print("{}\n", c.sentences[i]);
   if (!options.report.empty()) fmt::print("\nReport: {}\n", options.report);
-  fmt::print("\nNext: {}\n", next_step(c, options));
 }
 
 nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options) {

@@ -97,11 +97,7 @@ std::string describe(const Region& region, std::string_view unit, bool noise_kno
 }  // namespace
 
 std::string place_of(const Region& region) {
-  const std::string text = place_in_words(region.variable, {region.where, region.from, region.to});
-  for (const std::string_view lead : {"At an ", "At a ", "At ", "In "}) {
-    if (text.starts_with(lead)) return text.substr(lead.size());
-  }
-  return text;
+  return place_name(region.variable, {region.where, region.from, region.to});
 }
 
 Result<Comparison> compare(const Table& table, const config::ModelFile& model,

@@ -63,8 +63,9 @@ struct Comparison {
   bool as_is = false;
   std::vector<Region> regions;  ///< worst first
   std::vector<RunChange> changes;
-  std::vector<std::string> sentences;  ///< the conclusions, in the order to print them
-  bool noise_known = false;            ///< from the table or the fit; else z and p mean nothing
+  /// The conclusions, in the order to print them: the verdict, what carries it, then the rest.
+  std::vector<std::string> sentences;
+  bool noise_known = false;  ///< from the table or the fit; else z and p mean nothing
   /// RMS that noise alone would leave, beside that of the fit (NoiseFloor::beside); where the model
   /// fails, its white part, which no misfit can pass for; NaN: unknown.
   double noise_floor = 0.0;

@@ -14,7 +14,6 @@
 namespace fogbench::model {
 namespace {
 
-constexpr std::size_t kMostRegionsSaid = 5;
 constexpr std::size_t kMostRunsCompared = 6;
 
 /// Half a unit in the last digit that the number is written with: 0.004 -> 0.0005.
@@ -81,73 +80,58 @@ void say_rounding(Comparison& comparison, const Table& table, const config::Mode
       first.name, first.given, first.half, first.effect, unit, sum, unit));
 }
 
-void say_fit(Comparison& c, std::string_view unit, const std::string& noise_says) {
-  std::string text = fmt::format("{} leaves an RMS residual of {:.3g} {} over {} rows.",
-                                 c.as_is ? "The model, held as given," : "The fitted model",
-                                 c.fit.rms, unit, c.fit.rows.size());
-  if (std::isfinite(c.noise_floor)) {
-    const bool fails = c.p_adequate < kAdequate;
-    const std::string_view which = !c.fit.coloured ? "The stated noise"
-                                   : fails         ? "White noise"
-                                                   : "Noise";
-    text += fmt::format(" {} alone would leave {:.3g} {}.", which, c.noise_floor, unit);
-    if (c.fit.coloured && !fails) {
-      text.back() = ':';
-      text += " " + c.floor.parts_in_words(unit) + ".";
-    }
+std::string verdict_of_compare(const Comparison& c) {
+  if (!c.noise_known) return "Whether the model misses by more than noise cannot be said.";
+  if (c.p_adequate < kAdequate) {
+    return fmt::format(
+        "The model misses the measurements by more than noise explains ({}){}.",
+        probability_text(c.p_adequate),
+        c.looks_like.empty() ? std::string() : ": what is left looks like " + c.looks_like);
   }
-  c.sentences.push_back(std::move(text));
-  const bool fails = c.noise_known && c.p_adequate < kAdequate;
-  c.sentences.push_back(fmt::format("The noise: {}.{}", noise_says,
-                                    fails && c.fit.coloured && !c.as_is
-                                        ? " Part of the model's misfit may stand in these numbers."
-                                        : ""));
+  if (c.regions.empty()) return "All rows are alike: there are no ranges to look at one by one.";
+  if (c.regions.front().z == 0.0) {
+    return "The fitted terms leave no range free to differ from the measurements on average.";
+  }
+  return fmt::format("The model misses the measurements by no more than noise explains ({}).",
+                     probability_text(c.p_adequate));
 }
 
-void say_regions(Comparison& c, const Table& table, const config::ModelFile& model,
-                 std::string_view unit) {
+std::string evidence_of_compare(const Comparison& c, std::string_view unit) {
+  std::string text = fmt::format("{} leaves an RMS residual of {:.3g} {} over {} rows",
+                                 c.as_is ? "The model, held as given," : "The fitted model",
+                                 c.fit.rms, unit, c.fit.rows.size());
+  if (!std::isfinite(c.noise_floor)) return text + ".";
+  const bool fails = c.p_adequate < kAdequate;
+  const std::string_view which = !c.fit.coloured ? "the stated noise"
+                                 : fails         ? "white noise"
+                                                 : "noise";
+  return text + fmt::format(", where {} alone would leave {:.3g}.", which, c.noise_floor);
+}
+
+void say_noise(Comparison& c, std::string_view unit, const std::string& noise_says) {
   const bool fails = c.noise_known && c.p_adequate < kAdequate;
-  const bool some_range = !c.regions.empty() && c.regions.front().p_family_wise < kAdequate;
-  if (fails) {
-    c.sentences.push_back(fmt::format(
-        "That is more than noise explains ({}){}.{}", probability_text(c.p_adequate),
-        c.looks_like.empty() ? std::string()
-                             : fmt::format(": what is left looks like {}, and \"fogbench "
-                                           "diagnose\" says what it is",
-                                           c.looks_like),
-        some_range ? " The worst ranges:" : ""));
-    if (!some_range) return;
-  } else if (c.regions.empty()) {
-    c.sentences.push_back("All rows are alike: there are no ranges to look at one by one.");
-    return;
-  } else if (!c.noise_known) {
-    c.sentences.push_back(
-        "Whether the misses are more than noise cannot be said; the largest come first:");
-  } else if (c.regions.front().z == 0.0) {
-    c.sentences.push_back(
-        "The fitted terms leave no range free to differ from the measurements on average.");
-    return;
-  } else {
-    c.sentences.push_back(
-        fmt::format("No more than noise explains: the worst of {} ranges would stand out as much "
-                    "by chance with "
-                    "{}. ({})",
-                    c.regions.size(), probability_text(c.p_adequate), c.regions.front().says));
-    return;
+  std::string text = fmt::format("The noise: {}.", noise_says);
+  if (std::isfinite(c.noise_floor) && c.fit.coloured && !fails) {
+    text += fmt::format(" What it leaves: {}.", c.floor.parts_in_words(unit));
   }
-  for (std::size_t i = 0; i < std::min(c.regions.size(), kMostRegionsSaid); ++i) {
-    const Region& region = c.regions[i];
-    if (fails && region.p_family_wise >= kAdequate) break;
-    std::string text = region.says;
-    if (i == 0) {
-      text.back() = ':';
-      text +=
-          fmt::format(" worst of {}; the model gives {:.4g}, the measurements {:.4g} {}.",
-                      c.regions.size(), region.observed - region.residual, region.observed, unit);
-    }
-    c.sentences.push_back(std::move(text));
-    if (i == 0 && c.as_is) say_rounding(c, table, model, unit);
+  if (fails && c.fit.coloured && !c.as_is) {
+    text += " Part of the model's misfit may stand in these numbers.";
   }
+  c.sentences.push_back(std::move(text));
+}
+
+/// The worst range; the others stand in the table beside it.
+void say_worst_range(Comparison& c, const Table& table, const config::ModelFile& model,
+                     std::string_view unit) {
+  const bool fails = c.noise_known && c.p_adequate < kAdequate;
+  if (c.regions.empty() || (c.noise_known && c.regions.front().z == 0.0)) return;
+  const Region& worst = c.regions.front();
+  if (fails && worst.p_family_wise >= kAdequate) return;
+  c.sentences.push_back(worst.says);
+  c.sentences.push_back(
+      fmt::format("It is the worst of {}; the model gives {:.4g}, the measurements {:.4g} {}.",
+                  c.regions.size(), worst.observed - worst.residual, worst.observed, unit));
+  if (c.as_is && (fails || !c.noise_known)) say_rounding(c, table, model, unit);
 }
 
 /// One run's fit.
@@ -261,8 +245,9 @@ void conclude(Comparison& comparison, const Table& table, const config::ModelFil
               const FitOptions& options, const std::string& noise_says) {
   const std::string_view unit = config::unit_of(model.observable);
   std::vector<std::string> changes = find_changes(comparison, table, model, options);
-  say_fit(comparison, unit, noise_says);
-  say_regions(comparison, table, model, unit);
+  comparison.sentences = {verdict_of_compare(comparison), evidence_of_compare(comparison, unit)};
+  say_noise(comparison, unit, noise_says);
+  say_worst_range(comparison, table, model, unit);
   for (std::string& text : changes) comparison.sentences.push_back(std::move(text));
 }
 

@@ -25,22 +25,31 @@ constexpr double kGap = 1.0 / 40.0;
 
 struct Variable {
   const char* column;
-  const char* words;  // before the range
+  const char* article;
+  const char* thing;  // before the range
   double least_span;  // below it the variable was not varied: what is left is its sensor's noise
 };
 
 constexpr Variable kVariables[] = {
-    {"temperature_c", "At", 0.5},
-    {"temperature_rate_c_per_h", "At a temperature rate of", 1.0},
-    {"temperature_gradient_c", "At a temperature gradient of", 0.1},
-    {"ambient_c", "At an ambient temperature of", 0.5},
-    {"heater_w", "At a heater power of", 0.1},
-    {"field_x_ut", "At a field x of", 5.0},
-    {"field_y_ut", "At a field y of", 5.0},
-    {"field_z_ut", "At a field z of", 5.0},
-    {"azimuth_deg", "At an azimuth of", 1.0},
-    {"time_s", "At a time of", 60.0},
+    {"temperature_c", "", "", 0.5},
+    {"temperature_rate_c_per_h", "a ", "temperature rate of ", 1.0},
+    {"temperature_gradient_c", "a ", "temperature gradient of ", 0.1},
+    {"ambient_c", "an ", "ambient temperature of ", 0.5},
+    {"heater_w", "a ", "heater power of ", 0.1},
+    {"field_x_ut", "a ", "field x of ", 5.0},
+    {"field_y_ut", "a ", "field y of ", 5.0},
+    {"field_z_ut", "a ", "field z of ", 5.0},
+    {"azimuth_deg", "an ", "azimuth of ", 1.0},
+    {"time_s", "a ", "time of ", 60.0},
 };
+
+/// Null: a variable that has no name for people.
+const Variable* known_variable(const std::string& column) {
+  for (const Variable& known : kVariables) {
+    if (column == known.column) return &known;
+  }
+  return nullptr;
+}
 
 /// The range that holds the value: ranges are in order and do not overlap; values in a gap between
 /// two go to the nearer one (rows that were not among those looked at).
@@ -166,22 +175,26 @@ std::vector<Partition> partition_rows(const Table& table, std::span<const std::s
   return out;
 }
 
-std::string place_in_words(const std::string& variable, const Range& range) {
-  if (variable.empty()) return fmt::format("In {}", range.where);
+std::string place_name(const std::string& variable, const Range& range) {
+  if (variable.empty()) return range.where;
   const bool time = variable == "time_s";
   const double scale = time ? 3600.0 : 1.0;
   const double from = range.from / scale, to = range.to / scale;
   const std::string_view unit = time ? "h" : config::unit_of(variable);
-  const char* words = "At";
-  for (const Variable& known : kVariables) {
-    if (variable == known.column) words = known.words;
-  }
+  const Variable* known = known_variable(variable);
+  const char* thing = known ? known->thing : "";
   // Set points are read with a little scatter: one number when four digits say the same.
   const std::string low = fmt::format("{:.4g}", from), high = fmt::format("{:.4g}", to);
   if (low == high || to - from <= 2e-3 * std::max(std::abs(from), std::abs(to))) {
-    return fmt::format("{} {:.4g} {}", words, 0.5 * (from + to), unit);
+    return fmt::format("{}{:.4g} {}", thing, 0.5 * (from + to), unit);
   }
-  return fmt::format("{} {}..{} {}", words, low, high, unit);
+  return fmt::format("{}{}..{} {}", thing, low, high, unit);
+}
+
+std::string place_in_words(const std::string& variable, const Range& range) {
+  const Variable* known = known_variable(variable);
+  return fmt::format("{} {}{}", variable.empty() ? "In" : "At", known ? known->article : "",
+                     place_name(variable, range));
 }
 
 }  // namespace fogbench::model

@@ -35,6 +35,9 @@ std::vector<Partition> partition_rows(const Table& table, std::span<const std::s
 /// quantiles. Empty when fewer than two values differ.
 std::vector<Range> ranges_of(std::span<const double> values);
 
+/// "50..55 degC", "field z of 100 uT", "segment coil_z/down".
+std::string place_name(const std::string& variable, const Range& range);
+
 /// "At 50..55 degC", "At a field z of 100 uT", "In segment coil_z/down".
 std::string place_in_words(const std::string& variable, const Range& range);
 

@@ -19,7 +19,7 @@ std::string regions_table(const Comparison& c, std::string_view unit) {
   std::string out = fmt::format(
       "<div class=\"wide\"><table><tr><th></th><th "
       "class=\"text\">range</th><th>rows</th><th>measured, {0}</th>"
-      "<th>model, {0}</th><th>residual, {0}</th><th>slow drift apart, {0}</th><th>z</th><th>p, of "
+      "<th>model, {0}</th><th>residual, {0}</th><th>less slow drift, {0}</th><th>z</th><th>p, of "
       "all "
       "ranges</th></tr>\n",
       unit);
@@ -56,7 +56,8 @@ std::string report_html(const Comparison& c, const Table& table, const config::M
       c.as_is ? "coefficients held as given" : "coefficients fitted");
   out += fmt::format("<div class=\"verdict{}\">\n", fails ? " fails" : "");
   for (const std::string& sentence : c.sentences) {
-    out += fmt::format("<p>{}</p>\n", escaped(sentence));
+    out += fmt::format("<p{}>{}</p>\n", &sentence == &c.sentences.front() ? " class=\"lead\"" : "",
+                       escaped(sentence));
   }
   for (const std::string& warning : c.fit.warnings) {
     out += fmt::format("<p>Warning: {}</p>\n", escaped(warning));

@@ -109,7 +109,7 @@ std::string loop_legend(const PlottedFits& fits) {
                       two ? "falling, before" : "falling");
   if (two) {
     out += legend_entry("after", R"(<path class="joint after thin" d="M0 7h28"/>)",
-                        "both, after: with what was added");
+                        "both directions, with what was added");
   }
   return out + "</ul>\n";
 }

@@ -59,8 +59,7 @@ th, td { padding: .3rem .9rem .3rem 0; text-align: right; border-bottom: 1px sol
 th { font-weight: 600; color: var(--soft); }
 th:first-child, td:first-child, th.text, td.text { text-align: left; }
 tr.fails td { color: var(--fail); font-weight: 600; }
-.kicker { color: var(--fail); font-weight: 600; margin: 0 !important; }
-.verdict:not(.fails) .kicker { color: var(--point); }
+.lead, .to-do { font-weight: 600; }
 .figures { display: grid; gap: .75rem 2rem; margin: 1.5rem 0 0;
            grid-template-columns: repeat(auto-fit, minmax(11rem, max-content)); }
 .figures dt { color: var(--soft); font-size: .875rem; }

@@ -122,7 +122,7 @@ std::string plot_legend(const PlottedFits& fits) {
   }
   if (fits.noise_floor > 0.0) {
     out += legend_entry("key", R"(<line class="noise" x1="0" y1="7" x2="28" y2="7"/>)",
-                        "twice the noise that is left");
+                        "twice the noise floor");
   }
   if (!failing_regions(fits.comparison).empty()) {
     out += legend_entry("key", R"(<rect class="band" width="28" height="14"/>)",

@@ -33,7 +33,8 @@ FirstLook look_at(const SearchInput& input, const Library& smooth, std::uint64_t
   }
   if (const auto noise = gls(input.shapes(), input.base, input.y)) {
     out.p_walk = input.shapes().prior().walk_is_noise(noise->noise);
-    if (out.p_walk < std::min(others, out.p_smooth / kShareOfSmooth)) {
+    constexpr double kStandsOut = 0.05;  // an effect that does is the better hint
+    if (out.p_walk < kStandsOut && std::min(others, out.p_smooth / kShareOfSmooth) > kStandsOut) {
       out.looks_like = "a slow effect, or a random walk far beyond that of such gyros";
     }
   }

@@ -64,7 +64,7 @@ TEST(Compare, FindsNothingWrongWithTheLeastSquaresQuadratic) {
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->fit.rms, 0.05518, 1e-5);
   EXPECT_GT(result->p_adequate, 0.05);
-  EXPECT_THAT(result->sentences, Contains(HasSubstr("No more than noise explains")));
+  EXPECT_THAT(result->sentences, Contains(HasSubstr("by no more than noise explains")));
 }
 
 Table published_magnetic(std::vector<double> rates) {

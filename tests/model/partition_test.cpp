@@ -85,6 +85,8 @@ TEST(PlaceInWords, HasUnitsAndOneNumberForASetPoint) {
   EXPECT_EQ(place_in_words("field_z_ut", {"", -100.0, 100.0}), "At a field z of -100..100 uT");
   EXPECT_EQ(place_in_words("time_s", {"", 3600.0, 7200.0}), "At a time of 1..2 h");
   EXPECT_EQ(place_in_words("", {"segment coil_z/down", 0.0, 0.0}), "In segment coil_z/down");
+  EXPECT_EQ(place_name("field_z_ut", {"", -100.0, 100.0}), "field z of -100..100 uT");
+  EXPECT_EQ(place_name("", {"segment coil_z/down", 0.0, 0.0}), "segment coil_z/down");
 }
 
 }  // namespace
