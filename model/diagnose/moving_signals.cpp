@@ -20,6 +20,7 @@ double least_excitation(std::string_view name) {
   if (name == "ambient_c") return 0.2;
   if (name == "heater_w") return 0.5;
   if (name == "azimuth_deg") return 1.0;
+  if (name == "coil_heat") return 0.004;  // A^2: coils that make 5 uT
   return 0.0;
 }
 
