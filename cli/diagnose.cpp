@@ -23,6 +23,7 @@
 #include "config/units.hpp"
 #include "model/diagnose/diagnose.hpp"
 #include "model/diagnose/diagnosis_report.hpp"
+#include "model/diagnose/verdict_text.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "model/effect.hpp"
 
@@ -50,11 +51,15 @@ std::string next_step(const model::Diagnosis& d, const DiagnoseOptions& options)
   if (!options.output.empty()) {
     return fmt::format("fogbench compare {} --model {}", data, shell_word(options.output));
   }
-  if (d.missing.empty() && d.verdict == model::Verdict::kUnexplained && options.report.empty()) {
-    return fmt::format("fogbench diagnose {} --model {} --report page.html", data, model);
-  }
-  if (d.missing.empty())
+  if (d.verdict == model::Verdict::kNothingMissing) {
     return fmt::format("fogbench fit {} --model {} -o fitted.json", data, model);
+  }
+  // Nothing that could be added: a look at the residual is next.
+  if (d.missing.empty() || (d.verdict == model::Verdict::kUnexplained && !d.far_from_floor)) {
+    return options.report.empty()
+               ? fmt::format("fogbench diagnose {} --model {} --report page.html", data, model)
+               : fmt::format("fogbench compare {} --model {}", data, model);
+  }
   std::vector<std::string> effects;
   for (const model::MissingEffect& m : d.missing) effects.push_back(m.found.effect);
   const bool in_catalogue = std::all_of(effects.begin(), effects.end(), [](const std::string& id) {
@@ -176,8 +181,9 @@ void print_each(const OfEach& one, std::string_view unit) {
     return;
   }
   const model::Diagnosis& d = **one.result;
+  const double rms = d.ladder.empty() ? d.after.rms : d.ladder.back().rms;
   fmt::print("{}: {}: {} RMS {:.3g} {}, noise floor {:.3g}.\n", name, model::verdict_of(d),
-             d.sentences.front(), d.after.rms, unit, d.noise_floor);
+             model::verdict_in_words(d, "").verdict, rms, unit, d.noise_floor);
 }
 
 ordered_json json_of_each(const OfEach& one) {
@@ -244,9 +250,11 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
   const auto result = diagnosed(options, given);
   clear_progress();
   if (!result) return result.error();
+  const std::string next = next_step(*result, options);
+  const model::VerdictWords words = model::verdict_in_words(*result, next);
   if (page) {
     const Status written =
-        put(*page, model::diagnosis_html(*result, given.model, data_name(options.data)));
+        put(*page, model::diagnosis_html(*result, words, given.model, data_name(options.data)));
     if (!written) return written.error();
   }
   if (extended) {
@@ -255,12 +263,11 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
     if (Status written = put(*extended, *text); !written) return written.error();
   }
   if (options.json) {
-    print_json(diagnosis_json(*result, next_step(*result, options)));
+    print_json(diagnosis_json(*result, next));
   } else {
-    print_diagnosis(*result, config::unit_of(given.model.observable));
+    print_diagnosis(*result, words, config::unit_of(given.model.observable));
     if (!options.report.empty()) fmt::print("\nReport: {}\n", options.report);
     if (!options.output.empty()) fmt::print("\nModel written to {}\n", options.output);
-    fmt::print("\nNext: {}\n", next_step(*result, options));
   }
   return status_of(*result, options);
 }

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "model/diagnose/verdict_text.hpp"
+
 namespace fogbench::cli {
 namespace {
 
@@ -12,9 +14,11 @@ ordered_json missing_json(const model::MissingEffect& m) {
                errors = ordered_json::object(), rivals = ordered_json::array();
   for (const model::Estimate& e : m.estimates) {
     // "warm_up.tau" is an inner parameter, "earth_rate_projection.cos" a coefficient.
-    const std::string suffix =
-        e.name.starts_with(m.found.effect + ".") ? e.name.substr(m.found.effect.size() + 1) : "";
-    (e.name == m.inner_name ? parameters[suffix] : coefficients[e.name]) = e.value;
+    if (e.name == m.inner_name) {
+      parameters[std::string(model::name_beside(m.found.effect, e.name))] = e.value;
+    } else {
+      coefficients[e.name] = e.value;
+    }
     errors[e.name] = e.coverage_factor * e.standard_error;
   }
   for (const model::Rival& r : m.found.rivals) {
@@ -131,7 +135,7 @@ ordered_json diagnosis_json(const model::Diagnosis& d, const std::string& next_s
       {"bounds", bounds},
       {"next_measurements", next},
       {"ladder", ladder},
-      {"sentences", d.sentences},
+      {"sentences", model::verdict_in_words(d, next_step).sentences()},
       {"warnings", warnings},
       {"next", next_step}};
 }

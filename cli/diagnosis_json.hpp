@@ -7,7 +7,8 @@
 
 namespace fogbench::cli {
 
-/// What `fogbench diagnose --json` prints. Numbers that are not known are null.
+/// What `fogbench diagnose --json` prints. Numbers that are not known are null. Its sentences are
+/// the verdict, the evidence, what to do, then the details (verdict_in_words).
 nlohmann::ordered_json diagnosis_json(const model::Diagnosis& diagnosis,
                                       const std::string& next_step);
 

@@ -45,7 +45,7 @@ void print_bounds(const std::vector<model::Bound>& bounds) {
 void print_not_testable(const std::vector<model::NotTestable>& effects) {
   GroupedLines lines;
   for (const model::NotTestable& n : effects) lines.add(n.because, n.effect);
-  lines.print("Not testable with these data:");
+  lines.print("What these data cannot test:");
 }
 
 std::string few_of(const std::vector<std::string>& names) {
@@ -58,24 +58,7 @@ std::string few_of(const std::vector<std::string>& names) {
   return fmt::format("{}{}", fmt::join(first, ", "), rest);
 }
 
-}  // namespace
-
-void print_diagnosis(const model::Diagnosis& d, std::string_view unit) {
-  const std::string in(unit);
-  for (const std::string& sentence : d.sentences) fmt::print("{}\n", sentence);
-  for (const std::string& note : d.notes) fmt::print("note: {}\n", note);
-  for (const std::string& warning : d.after.warnings) fmt::print("warning: {}\n", warning);
-  fmt::print("\n");
-  std::size_t shown = 0;
-  constexpr std::size_t kMostFailures = 3;
-  for (const model::Region& r : d.before.regions) {
-    if (!d.before.noise_known || r.p_family_wise > d.false_alarm_rate) continue;
-    if (shown++ == 0) fmt::print("Where the model fails most:\n");
-    fmt::print("  {}\n", r.says);
-    if (shown == kMostFailures) break;
-  }
-  if (shown > 0) fmt::print("\n");
-
+void print_ladder(const model::Diagnosis& d, const std::string& in) {
   const auto number = [](double value) {
     return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("-");
   };
@@ -89,20 +72,53 @@ void print_diagnosis(const model::Diagnosis& d, std::string_view unit) {
   }
   fmt::print("{}", ladder.text());
   if (std::isfinite(d.floor.white)) {
-    fmt::print("The noise floor: {}.\n", d.floor.parts_in_words(unit));
+    fmt::print("The noise floor: {}.\n", d.floor.parts_in_words(in));
   }
+}
+
+void print_failures(const model::Diagnosis& d) {
+  constexpr std::size_t kMostFailures = 3;
+  std::size_t shown = 0;
+  for (const model::Region& r : d.before.regions) {
+    if (!d.before.noise_known || r.p_family_wise > d.false_alarm_rate) continue;
+    if (shown++ == 0) fmt::print("\nWhere the model as it came fails most:\n");
+    fmt::print("  {}\n", r.says);
+    if (shown == kMostFailures) break;
+  }
+}
+
+/// What tells apart is named with the effects; what shows effects never seen names them itself.
+void print_next(const model::Diagnosis& d, bool tells_apart, const std::string& title) {
+  bool first = true;
+  for (const model::NextMeasurement& n : d.next_measurements) {
+    const bool tells = n.purpose != model::NextMeasurement::Purpose::kShow;
+    if (tells != tells_apart || &n == model::proposed_measurement(d)) continue;
+    if (first) fmt::print("\n{}\n", title);
+    first = false;
+    fmt::print("  {}{}\n", n.action,
+               tells_apart ? fmt::format(" (for {})", few_of(n.tells_apart)) : std::string());
+  }
+}
+
+}  // namespace
+
+void print_diagnosis(const model::Diagnosis& d, const model::VerdictWords& words,
+                     std::string_view unit) {
+  fmt::print("{}\n{}\n{}\n\n", words.verdict, words.evidence, words.to_do);
+  print_ladder(d, std::string(unit));
+  const bool details = !words.details.empty() || !d.notes.empty() || !d.after.warnings.empty();
+  if (details) fmt::print("\n");
+  for (const std::string& sentence : words.details) fmt::print("{}\n", sentence);
+  for (const std::string& note : d.notes) fmt::print("note: {}\n", note);
+  for (const std::string& warning : d.after.warnings) fmt::print("warning: {}\n", warning);
+  print_failures(d);
+  print_next(d, true,
+             proposed_measurement(d) ? "What tells them apart, too:" : "What tells them apart:");
   fmt::print("\n");
   print_bounds(d.bounds);
+  if (!d.bounds.empty() && !d.not_testable.empty()) fmt::print("\n");
   print_not_testable(d.not_testable);
-  if (!d.next_measurements.empty()) fmt::print("\nWhat to measure next:\n");
-  for (const model::NextMeasurement& n : d.next_measurements) {
-    // What would show effects never seen names them itself.
-    if (n.separation > 0.0) {
-      fmt::print("  {} (for {})\n", n.action, few_of(n.tells_apart));
-    } else {
-      fmt::print("  {}\n", n.action);
-    }
-  }
+  print_next(d, false, "What would show what these data cannot:");
 }
 
 }  // namespace fogbench::cli

@@ -94,7 +94,7 @@ void print_hidden(const ChallengeSecret& secret) {
       fmt::print(", {} {:g}{}{}", name, value, unit.starts_with("100 ") ? " x " : " ", unit);
     }
     fmt::print(
-        ".\n  The model cannot take up {:.3g} deg/h RMS of it, {:.1f} times what noise alone "
+        ".\n  The fitted model misses {:.3g} deg/h RMS of it, {:.1f} times what noise alone "
         "leaves.\n",
         secret.visible_deg_per_h[i], secret.visible_deg_per_h[i] / secret.noise_deg_per_h);
   }

@@ -17,7 +17,6 @@
 #include "model/diagnose/next_measurement.hpp"
 #include "model/diagnose/refit_gates.hpp"
 #include "model/diagnose/thermometer.hpp"
-#include "model/diagnose/verdict_text.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "model/row_order.hpp"
 
@@ -150,7 +149,9 @@ class Work {
     conclude(found, adequacy);
     if (d_.verdict == Verdict::kUnexplained) suggest(source, base->columns, last, base->y);
     doubt_walk(input_of_search, smooth);
-    say();
+    drop_bounds_of_rivals();
+    d_.next_measurements = next_measurements(
+        {d_.table, d_.after.fitted, noise_to_plan_with(), d_.ambiguous, d_.not_testable});
     std::erase_if(d_.notes, [&](const std::string& note) {
       const auto& said = d_.after.warnings;
       return std::find(said.begin(), said.end(), note) != said.end();
@@ -422,10 +423,13 @@ class Work {
     d_.ambiguous = {std::move(set)};
   }
 
-  void say() {
-    d_.next_measurements = next_measurements(
-        {d_.table, d_.after.fitted, noise_to_plan_with(), d_.ambiguous, d_.not_testable});
-    d_.sentences = verdict_in_words(d_);
+  /// What may be missing is not absent.
+  void drop_bounds_of_rivals() {
+    std::erase_if(d_.bounds, [&](const Bound& bound) {
+      return std::any_of(d_.ambiguous.begin(), d_.ambiguous.end(), [&](const auto& set) {
+        return std::find(set.begin(), set.end(), bound.effect) != set.end();
+      });
+    });
   }
 
   /// A formula beside the model as it came, or beside what was found where that is clearly better.

@@ -89,7 +89,6 @@ struct Diagnosis {
   std::vector<Bound> bounds;
   std::vector<NextMeasurement> next_measurements;
   std::vector<LadderStep> ladder;
-  std::vector<std::string> sentences;  ///< the verdict in words, in the order to print them
   /// "the thermometer's resolution of 1 degC", where it explains what an effect would have been
   /// named for; empty: it does not.
   std::string explained_by_thermometer;

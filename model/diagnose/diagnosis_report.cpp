@@ -13,20 +13,6 @@
 namespace fogbench::model {
 namespace {
 
-std::string_view in_short(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kNothingMissing:
-      return "Nothing is missing";
-    case Verdict::kMissingEffect:
-      return "An effect is missing";
-    case Verdict::kAmbiguous:
-      return "Several effects could be missing";
-    case Verdict::kUnexplained:
-      return "Something is left unexplained";
-  }
-  return "";
-}
-
 /// One figure of the heading: "RMS residual, deg/h", "0.031 -> 0.007".
 std::string figure_of_merit(std::string_view name, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", name, value);
@@ -37,35 +23,39 @@ std::string from_to(double before, double after, bool changed) {
   return fmt::format("{} &rarr; {}", number_text(before), number_text(after));
 }
 
-std::string heading(const Diagnosis& d, const config::ModelFile& model,
+std::string heading(const Diagnosis& d, const VerdictWords& words, const config::ModelFile& model,
                     const std::string& data_name) {
-  std::string out = fmt::format(
-      "<header class=\"verdict{}\">\n<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n",
-      d.verdict == Verdict::kNothingMissing ? "" : " fails", in_short(d.verdict),
-      escaped(d.sentences.empty() ? std::string(in_short(d.verdict)) : d.sentences.front()));
-  out += fmt::format("<p class=\"sub\">{} &middot; model: {}</p>\n", escaped(data_name),
-                     escaped(model.name));
-  for (std::size_t i = 1; i < d.sentences.size(); ++i) {
-    out += fmt::format("<p>{}</p>\n", escaped(d.sentences[i]));
-  }
-  for (const std::string& note : d.notes) out += fmt::format("<p>{}</p>\n", escaped(note));
-  for (const std::string& warning : d.after.warnings) {
-    out += fmt::format("<p>Warning: {}</p>\n", escaped(warning));
-  }
-  return out + "</header>\n";
+  return fmt::format(
+      "<header class=\"verdict{}\">\n<h1>{}</h1>\n<p>{}</p>\n<p class=\"to-do\">{}</p>\n"
+      "<p class=\"sub\">{} &middot; model: {}</p>\n</header>\n",
+      d.verdict == Verdict::kNothingMissing ? "" : " fails", escaped(words.verdict),
+      escaped(words.evidence), escaped(words.to_do), escaped(data_name), escaped(model.name));
 }
 
 std::string figures_of_merit(const Diagnosis& d, std::string_view unit) {
-  const bool changed = !d.missing.empty();
+  if (d.ladder.empty()) return "";
+  const LadderStep &first = d.ladder.front(), &last = d.ladder.back();
+  const bool changed = d.ladder.size() > 1;
   const std::string in = with_unit(unit);
   std::string out = "<dl class=\"figures\">\n";
-  out += figure_of_merit("chance that noise alone looks so bad (p)", p_text(d.p_adequate));
-  out += figure_of_merit("RMS residual" + in, from_to(d.before.fit.rms, d.after.rms, changed));
-  out += figure_of_merit(
-      "RMS on rows held out" + in,
-      from_to(d.heldout_rms, changed ? d.missing.back().heldout_rms_after : 0.0, changed));
+  out += figure_of_merit("RMS residual" + in, from_to(first.rms, last.rms, changed));
+  out += figure_of_merit("RMS on rows held out of the fit" + in,
+                         from_to(first.heldout_rms, last.heldout_rms, changed));
   out += figure_of_merit("noise alone would leave" + in, number_text(d.noise_floor));
+  out += figure_of_merit("chance that noise alone looks so (p)", p_text(d.p_adequate));
   return out + "</dl>\n";
+}
+
+std::string details_section(const Diagnosis& d, const VerdictWords& words) {
+  std::string items;
+  for (const std::string& sentence : words.details) {
+    items += fmt::format("<li>{}</li>\n", escaped(sentence));
+  }
+  for (const std::string& note : d.notes) items += fmt::format("<li>{}</li>\n", escaped(note));
+  for (const std::string& warning : d.after.warnings) {
+    items += fmt::format("<li>Warning: {}</li>\n", escaped(warning));
+  }
+  return items.empty() ? "" : "<h2>In detail</h2>\n<ul>\n" + items + "</ul>\n";
 }
 
 std::string plots(const PlottedFits& fits) {
@@ -100,19 +90,19 @@ std::string footer(const Diagnosis& d, const config::ModelFile& model,
 
 }  // namespace
 
-std::string diagnosis_html(const Diagnosis& d, const config::ModelFile& model,
-                           const std::string& data_name) {
+std::string diagnosis_html(const Diagnosis& d, const VerdictWords& words,
+                           const config::ModelFile& model, const std::string& data_name) {
   const std::string_view unit = config::unit_of(model.observable);
   const PlottedFits fits{.table = d.table,
                          .model = model,
                          .comparison = d.before,
                          .after = d.missing.empty() ? nullptr : &d.after,
                          .noise_floor = d.noise_floor};
-  return page_start("Diagnosis of " + data_name) + heading(d, model, data_name) +
-         figures_of_merit(d, unit) + ladder_section(d, unit) + plots(fits) + failures_section(d) +
-         ranking_section(d) + parameters_section(d) + noise_section(d) + bounds_section(d) +
-         not_testable_section(d) + next_section(d) + footer(d, model, data_name) +
-         page_end(rows_json(fits));
+  return page_start("Diagnosis of " + data_name) + heading(d, words, model, data_name) +
+         figures_of_merit(d, unit) + ladder_section(d, unit) + ranking_section(d) +
+         details_section(d, words) + plots(fits) + failures_section(d) + parameters_section(d) +
+         next_section(d) + noise_section(d) + bounds_section(d) + not_testable_section(d) +
+         footer(d, model, data_name) + page_end(rows_json(fits));
 }
 
 }  // namespace fogbench::model

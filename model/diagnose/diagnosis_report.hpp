@@ -8,12 +8,13 @@
 
 #include "config/model_file.hpp"
 #include "model/diagnose/diagnose.hpp"
+#include "model/diagnose/verdict_text.hpp"
 
 namespace fogbench::model {
 
-/// `model`: as it came. `data_name`: what was diagnosed, for the heading. At most some 2,000 points
-/// are drawn in each plot.
-std::string diagnosis_html(const Diagnosis& diagnosis, const config::ModelFile& model,
-                           const std::string& data_name);
+/// `words`: verdict_in_words of it. `model`: as it came. `data_name`: what was diagnosed, for the
+/// heading. At most some 2,000 points are drawn in each plot.
+std::string diagnosis_html(const Diagnosis& diagnosis, const VerdictWords& words,
+                           const config::ModelFile& model, const std::string& data_name);
 
 }  // namespace fogbench::model

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/diagnose/verdict_text.hpp"
 #include "model/effect.hpp"
 #include "model/report_page.hpp"
 #include "model/report_plots.hpp"
@@ -100,12 +101,6 @@ std::string ranking_section(const Diagnosis& d) {
           escaped(rival.effect), formula_of(rival.effect), 100.0 * rival.probability,
           bar("heldout", rival.probability));
     }
-    if (!found.or_shape.empty()) {
-      notes += fmt::format(
-          "<li>In place of {}: another effect of this shape ({}) cannot be "
-          "excluded.</li>\n",
-          id, escaped(found.or_shape));
-    }
     if (found.inner_at_edge) {
       notes += fmt::format(
           "<li>The inner parameter of {} lies on the edge of its range: these "
@@ -194,16 +189,16 @@ std::string not_testable_section(const Diagnosis& d) {
 }
 
 std::string next_section(const Diagnosis& d) {
-  if (d.next_measurements.empty()) return "";
-  std::string out = "<h2>What to measure next</h2>\n<ul>\n";
+  std::string items;
   for (const NextMeasurement& next : d.next_measurements) {
-    out += fmt::format("<li>{}.{}</li>\n", escaped(next.action),
-                       next.tells_apart.empty()
-                           ? ""
-                           : fmt::format(" <span class=\"soft\">Shows: {}.</span>",
-                                         escaped_list(next.tells_apart)));
+    if (&next == proposed_measurement(d)) continue;  // said first of all
+    items += fmt::format("<li>{}.{}</li>\n", escaped(next.action),
+                         next.tells_apart.empty()
+                             ? ""
+                             : fmt::format(" <span class=\"soft\">Shows: {}.</span>",
+                                           escaped_list(next.tells_apart)));
   }
-  return out + "</ul>\n";
+  return items.empty() ? "" : "<h2>What else to measure</h2>\n<ul>\n" + items + "</ul>\n";
 }
 
 }  // namespace fogbench::model

@@ -17,6 +17,12 @@
 namespace fogbench::model {
 
 struct NextMeasurement {
+  enum class Purpose {
+    kTellApart,  ///< the members of an ambiguous set
+    kNoneTells,  ///< nothing that this bench can do tells them apart
+    kShow,       ///< effects that these data never excited, or columns that nobody recorded
+  };
+
   std::vector<std::string> tells_apart;
   std::string action;
   /// Expected whitened distance of the two most alike, from this measurement alone; 0 where the
@@ -24,6 +30,8 @@ struct NextMeasurement {
   double separation = 0.0;
   double hours = 0.0;  ///< on the bench, power-on to end, all repetitions
   int times = 1;
+  Purpose purpose = Purpose::kTellApart;
+  std::string experiment;  ///< its key (experiments.hpp); empty: none, or a column to record
 };
 
 struct NextMeasurementInput {

@@ -18,7 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr const char* kRandomWalk = "random_walk";
-constexpr const char* kExpected = ": expected to tell them apart at ";
 // Aimed at, so that nineteen measurements in twenty come out above kSeparates.
 constexpr double kAim = kSeparates + 1.645;
 // More repetitions than this are no recommendation.
@@ -282,9 +281,15 @@ std::vector<NextMeasurement> SetChoice::best_for(const Pairs& pairs,
     std::string text = c.experiment->action;
     if (walk_ && c.experiment->key.starts_with("rest_")) text += " and give it as --quiet";
     if (c.times > 1) text += fmt::format(", {} times", c.times);
-    text += fmt::format("{}{:.0f} sigma in {:.1f} h", kExpected, c.separation, c.hours());
+    text += fmt::format(": expected to tell them apart at {:.0f} sigma ({} are enough) in {:.1f} h",
+                        c.separation, kSeparates, c.hours());
     if (out.empty() && c.experiment->key != kRepeat) text += "; " + of_present(pairs);
-    out.push_back({names, std::move(text), c.separation, c.hours(), c.times});
+    out.push_back({.tells_apart = names,
+                   .action = std::move(text),
+                   .separation = c.separation,
+                   .hours = c.hours(),
+                   .times = c.times,
+                   .experiment = c.experiment->key});
   }
   return out;
 }
@@ -309,11 +314,8 @@ std::vector<NextMeasurement> SetChoice::choose() const {
     const auto best = best_for(pairs, two);
     if (!best.empty()) {
       // One line for all rivals that the same experiment settles.
-      const auto what = [](const NextMeasurement& n) {
-        return n.action.substr(0, n.action.find(kExpected));
-      };
       const auto same = std::find_if(out.begin(), out.end(), [&](const NextMeasurement& n) {
-        return what(n) == what(best.front());
+        return n.experiment == best.front().experiment && n.times == best.front().times;
       });
       if (same == out.end()) {
         out.push_back(best.front());
@@ -326,17 +328,19 @@ std::vector<NextMeasurement> SetChoice::choose() const {
       continue;
     }
     if (const double s = least(present_squared_, pairs); s >= kAim) {
-      out.push_back({two,
-                     fmt::format("repeat the present run, to make sure: at the size that was "
-                                 "fitted they come apart at {:.0f} sigma in it",
-                                 s),
-                     s, present_.hours});
+      out.push_back({.tells_apart = two,
+                     .action = fmt::format("repeat the present run, to make sure: at the size that "
+                                           "was fitted they come apart at {:.0f} sigma in it",
+                                           s),
+                     .separation = s,
+                     .hours = present_.hours});
       continue;
     }
-    out.push_back(
-        {two, fmt::format("none of the {} experiments that this bench knows would tell them "
-                          "apart at the size that was fitted",
-                          weighed_.size())});
+    out.push_back({.tells_apart = two,
+                   .action = fmt::format("none of the {} experiments that this bench knows would "
+                                         "tell them apart at the size that was fitted",
+                                         weighed_.size()),
+                   .purpose = NextMeasurement::Purpose::kNoneTells});
   }
   return out;
 }

@@ -25,7 +25,7 @@ constexpr std::size_t kMostNamed = 4;  // in one line; the rest is counted
 
 /// The instrument that a column comes from, for people.
 std::string_view source_of(std::string_view column) {
-  if (column.starts_with("field_") || column.starts_with("current_")) {
+  if (column.starts_with("field_") || column == "coil_current_a") {
     return "of the magnetometer or the coil supplies";
   }
   if (column == "azimuth_deg") return "of the turntable, or set by hand";
@@ -90,8 +90,9 @@ std::vector<NextMeasurement> columns_to_record(const NextMeasurementInput& input
   }
   std::vector<NextMeasurement> out;
   for (Group& g : groups) {
-    out.push_back({std::move(g.effects),
-                   fmt::format("record {} ({})", fmt::join(g.columns, ", "), g.source)});
+    out.push_back({.tells_apart = std::move(g.effects),
+                   .action = fmt::format("record {} ({})", fmt::join(g.columns, ", "), g.source),
+                   .purpose = NextMeasurement::Purpose::kShow});
   }
   return out;
 }
@@ -139,7 +140,12 @@ std::vector<NextMeasurement> experiments_for_unseen(const NextMeasurementInput& 
         chosen = e;
       }
     }
-    NextMeasurement next{.tells_apart = {}, .action = {}, .hours = hours[chosen]};
+    const Experiment& best_one = experiments[static_cast<std::size_t>(chosen)];
+    NextMeasurement next{.tells_apart = {},
+                         .action = {},
+                         .hours = hours[chosen],
+                         .purpose = NextMeasurement::Purpose::kShow,
+                         .experiment = best_one.key};
     std::vector<std::string> from;
     for (const std::size_t i : covered) {
       open[i] = false;
@@ -153,8 +159,7 @@ std::vector<NextMeasurement> experiments_for_unseen(const NextMeasurementInput& 
       rest = fmt::format(" and {} more effects", from.size() - kMostNamed);
       from.resize(kMostNamed);
     }
-    next.action = fmt::format("{}: would show {}{} ({:.1f} h)",
-                              experiments[static_cast<std::size_t>(chosen)].action,
+    next.action = fmt::format("{}: would show {}{} ({:.1f} h)", best_one.action,
                               fmt::join(from, ", "), rest, next.hours);
     out.push_back(std::move(next));
   }

@@ -3,113 +3,218 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "config/rounding.hpp"
+#include "config/units.hpp"
 #include "model/conclusions.hpp"
 
 namespace fogbench::model {
 namespace {
 
-std::vector<std::string> names_found(const Diagnosis& d) {
+std::string joined(const std::vector<std::string>& items, std::string_view between = ", ") {
+  return fmt::format("{}", fmt::join(items, between));
+}
+
+std::string names_found(const Diagnosis& d) {
   std::vector<std::string> names;
   for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
-  return names;
+  return joined(names);
+}
+
+/// "temperature_gradient = -0.269 +- 0.007 deg/h/degC", "bias_step = 0.55 +- 0.05 deg/h, t0 = ...".
+std::string estimates_text(const MissingEffect& m) {
+  std::vector<std::string> parts;
+  for (const Estimate& e : m.estimates) {
+    const std::string_view beside = name_beside(m.found.effect, e.name);
+    const std::string_view name = parts.empty() ? std::string_view(e.name) : beside;
+    if (std::isnan(e.value)) {
+      parts.push_back(fmt::format("{} not determined", name));
+    } else if (m.inner_open && e.name == m.inner_name) {
+      parts.push_back(
+          fmt::format("{} = {:.3g} {}, which these data do not determine", name, e.value, e.unit));
+    } else {
+      const config::Rounded r = config::rounded(e.value, e.coverage_factor * e.standard_error);
+      parts.push_back(fmt::format("{} = {} +- {} {}", name, r.value, r.uncertainty, e.unit));
+    }
+  }
+  return parts.empty() ? m.found.effect : joined(parts);
+}
+
+/// The set that the effect leads; null: no other effect does as well.
+const std::vector<std::string>* set_of(const Diagnosis& d, const std::string& effect) {
+  const auto set = std::find_if(d.ambiguous.begin(), d.ambiguous.end(),
+                                [&](const auto& s) { return s.front() == effect; });
+  return set == d.ambiguous.end() ? nullptr : &*set;
+}
+
+std::string missing_sentence(const Diagnosis& d) {
+  std::vector<std::string> parts;
+  for (const MissingEffect& m : d.missing) {
+    const auto* set = set_of(d, m.found.effect);
+    parts.push_back(set ? "one of " + joined(*set) : estimates_text(m));
+  }
+  // A slow effect or the noise, and none of them has been fitted.
+  for (const auto& set : d.ambiguous) {
+    if (d.missing.empty()) parts.push_back("one of " + joined(set));
+  }
+  return fmt::format("Missing: {}{}.", joined(parts, "; "),
+                     d.ambiguous.empty() ? "" : "; these data cannot say which");
+}
+
+/// Does the formula alone predict better than all that was found?
+bool formula_leads(const Diagnosis& d) {
+  constexpr double kClearlyBetter = 0.5;
+  return !d.unexplained.suggestion.empty() && !d.unexplained.beside_found && !d.missing.empty() &&
+         d.unexplained.heldout_rms < kClearlyBetter * d.missing.back().heldout_rms_after;
+}
+
+std::string unexplained_sentence(const Diagnosis& d) {
+  const std::string on =
+      d.unexplained.depends_on.empty()
+          ? std::string()
+          : fmt::format("; what is left depends on {}", joined(d.unexplained.depends_on));
+  if (formula_leads(d)) {
+    return fmt::format(
+        "Something is missing that the catalogue does not hold: {} does better than {}.",
+        d.unexplained.suggestion, names_found(d));
+  }
+  if (d.far_from_floor) {
+    return fmt::format("Missing: {}, and that is not all{}.", names_found(d), on);
+  }
+  if (d.missing.empty()) {
+    return fmt::format("Something is missing that no effect of the catalogue explains{}.", on);
+  }
+  return fmt::format(
+      "Something is missing that the catalogue does not hold; nearest, but not "
+      "enough: {}{}.",
+      names_found(d), on);
+}
+
+/// Rows that a diagnosis needs beyond those that there are.
+std::size_t rows_lacking(const Diagnosis& d) {
+  const std::size_t needed =
+      d.before.fit.fitted.terms.size() + static_cast<std::size_t>(kFewestFreeRows);
+  return needed - std::min(needed, d.table.rows());
 }
 
 std::string verdict_sentence(const Diagnosis& d) {
-  switch (d.verdict) {
-    case Verdict::kNothingMissing:
-      if (!d.judged) {
-        return fmt::format(
-            "Cannot tell whether anything is missing: {} rows beside {} terms, and the noise, "
-            "leave "
-            "nothing in which an effect could show.",
-            d.table.rows(), d.before.fit.fitted.terms.size());
-      }
-      return fmt::format(
-          "Nothing is missing that these data can show ({}): what is left, {:.3g} "
-          "deg/h RMS, is noise.",
-          probability_text(d.p_adequate),
-          d.ladder.empty() ? d.before.fit.rms : d.ladder.back().rms);
-    case Verdict::kMissingEffect:
-      return fmt::format("Missing: {} ({}).", fmt::join(names_found(d), ", "),
-                         probability_text(d.p_adequate));
-    case Verdict::kAmbiguous:
-      return fmt::format(
-          "Something is missing ({}), and these data cannot say which of several "
-          "effects it is.",
-          probability_text(d.p_adequate));
-    case Verdict::kUnexplained:
-      if (d.far_from_floor) {
-        return fmt::format(
-            "Found: {} ({}), but that is not all: rows left out are still missed by {:.3g} deg/h "
-            "RMS, where noise alone leaves {:.3g}{}.",
-            fmt::join(names_found(d), ", "), probability_text(d.p_adequate),
-            d.missing.back().heldout_rms_after, d.noise_floor,
-            d.unexplained.depends_on.empty()
-                ? std::string()
-                : fmt::format("; what is left depends on {}",
-                              fmt::join(d.unexplained.depends_on, ", ")));
-      }
-      return fmt::format(
-          "Something is left that no effect of the catalogue explains ({}){}.",
-          probability_text(d.unexplained.p_value),
-          d.unexplained.depends_on.empty()
-              ? std::string()
-              : fmt::format("; it depends on {}", fmt::join(d.unexplained.depends_on, ", ")));
-  }
-  return {};
+  if (d.verdict == Verdict::kUnexplained) return unexplained_sentence(d);
+  if (d.verdict != Verdict::kNothingMissing) return missing_sentence(d);
+  if (d.judged) return "Nothing is missing that these data can show.";
+  return fmt::format(
+      "Cannot tell whether anything is missing: {} rows beside {} terms {}.", d.table.rows(),
+      d.before.fit.fitted.terms.size(),
+      rows_lacking(d) > 0 ? "are too few" : "hold nothing that varies as an effect would");
 }
 
-std::string effect_sentence(const MissingEffect& m) {
-  std::string line = m.found.effect + ": ";
-  for (std::size_t i = 0; i < m.estimates.size(); ++i) {
-    const Estimate& e = m.estimates[i];
-    if (std::isnan(e.value)) {
-      line += fmt::format("{}{} not determined", i > 0 ? ", " : "", e.name);
-      continue;
+/// What noise alone leaves. Where something is left over it may stand in the slow part of the
+/// estimate: then the white part alone is sure.
+std::string beside_noise(const Diagnosis& d) {
+  const bool unsure =
+      d.verdict == Verdict::kUnexplained || (d.verdict == Verdict::kAmbiguous && d.missing.empty());
+  const double floor = unsure ? d.floor.white : d.noise_floor;
+  if (!std::isfinite(floor)) return "";
+  return fmt::format(", where {} leaves {:.3g}", unsure ? "white noise alone" : "noise alone",
+                     floor);
+}
+
+std::string evidence_sentence(const Diagnosis& d) {
+  // What a comparison says is all that can be said.
+  if (!d.judged && d.missing.empty()) return d.before.sentences[1];
+  const std::string_view unit = config::unit_of(d.before.fit.fitted.observable);
+  const bool ladder = !d.ladder.empty();
+  const double rms = ladder ? d.ladder.front().rms : d.before.fit.rms;
+  const auto held_out = [](const std::string& numbers) {
+    return fmt::format(", and {} on rows held out of the fit", numbers);
+  };
+  std::string text;
+  if (formula_leads(d)) {
+    text = fmt::format(
+        "On rows held out of the fit the formula leaves {:.3g} {} RMS, the {} effects {:.3g}, the "
+        "model as it came {:.3g}",
+        d.unexplained.heldout_rms, unit, d.missing.size(), d.missing.back().heldout_rms_after,
+        d.heldout_rms);
+  } else if (d.missing.empty() || !ladder) {
+    text = fmt::format("The model leaves {:.3g} {} RMS", rms, unit);
+    if (std::isfinite(d.heldout_rms)) text += held_out(fmt::format("{:.3g}", d.heldout_rms));
+  } else {
+    text = fmt::format("With {} the RMS residual falls from {:.3g} to {:.3g} {}",
+                       d.missing.size() > 1 ? "them" : d.missing.front().found.effect, rms,
+                       d.ladder.back().rms, unit);
+    if (std::isfinite(d.heldout_rms) && std::isfinite(d.ladder.back().heldout_rms)) {
+      text += held_out(
+          fmt::format("from {:.3g} to {:.3g}", d.heldout_rms, d.ladder.back().heldout_rms));
     }
-    if (m.inner_open && e.name == m.inner_name) {
-      line += fmt::format(" at {} = {:.3g} {}, which these data do not determine", e.name, e.value,
-                          e.unit);
-      continue;
-    }
-    const config::Rounded r = config::rounded(e.value, e.coverage_factor * e.standard_error);
-    line += fmt::format("{}{} = {} +- {} {}", i > 0 ? ", " : "", e.name, r.value, r.uncertainty,
-                        e.unit);
   }
-  line += fmt::format("; {}, the RMS residual falls to {:.3g} deg/h",
-                      probability_text(m.found.p_value), m.rms_after);
+  text += fmt::format("{}; chance that noise alone looks so: {}.", beside_noise(d),
+                      probability_text(d.p_adequate));
+  if (d.walk_beyond > 0.0) {
+    text += fmt::format(
+        " A random walk that explains it would be {:.0f} times what nine of ten such gyros stay "
+        "below.",
+        d.walk_beyond);
+  }
+  if (!d.explained_by_thermometer.empty()) {
+    text += fmt::format(" What else the model misses, {} explains.", d.explained_by_thermometer);
+  }
+  return text;
+}
+
+std::string few_rows_to_do(const Diagnosis& d) {
+  if (const std::size_t lacking = rows_lacking(d); lacking > 0) {
+    return fmt::format("Measure: {} more rows at least, at other temperatures, fields or times.",
+                       lacking);
+  }
+  return "Measure: the same with temperature, field or azimuth varied, and recorded.";
+}
+
+std::string to_do_sentence(const Diagnosis& d, const std::string& next_command) {
+  if (!d.judged && d.missing.empty()) return few_rows_to_do(d);
+  if (!d.unexplained.suggestion.empty() && d.verdict == Verdict::kUnexplained) {
+    const bool beside = d.unexplained.beside_found && !d.missing.empty();
+    return fmt::format(
+        R"(Try: {{"effect": "new", "expression": "{}"}} as a term of the model{}; a guess, held-out RMS {:.3g}.)",
+        d.unexplained.suggestion, beside ? " beside " + names_found(d) : std::string(),
+        d.unexplained.heldout_rms);
+  }
+  if (const NextMeasurement* next = proposed_measurement(d)) {
+    return fmt::format("Measure: {}.", next->action);
+  }
+  if (d.verdict == Verdict::kAmbiguous && d.walk_beyond > 0.0) {
+    return "Measure: the gyro at rest for as long (static-record), and give that run as --quiet: "
+           "it decides whether this is noise.";
+  }
+  return "Next: " + next_command;
+}
+
+/// What the verdict does not say of an effect that was found.
+std::string effect_sentence(const Diagnosis& d, const MissingEffect& m) {
+  const bool said = d.verdict == Verdict::kMissingEffect ||
+                    (d.verdict == Verdict::kAmbiguous && !set_of(d, m.found.effect));
+  std::string line = fmt::format("{}: {}", said ? m.found.effect : estimates_text(m),
+                                 probability_text(m.found.p_value));
   const HeldoutVote& vote = m.found.heldout;
   if (vote.folds > 0) {
-    line += fmt::format("; {} of {} held-out parts are predicted better with it", vote.better,
-                        vote.folds);
+    line += fmt::format("; {} of {} parts of the data are predicted better with it than without",
+                        vote.better, vote.folds);
   }
   if (!m.found.more.empty()) {
     line += "; one value of its inner parameter does not suffice, its shape bends";
+  }
+  if (!m.found.rivals.empty()) {
+    std::vector<std::string> rivals;
+    for (const Rival& r : m.found.rivals) {
+      rivals.push_back(fmt::format("{} ({:.0f} %)", r.effect, 100.0 * r.probability));
+    }
+    line += fmt::format("; probability {:.0f} %, or else {}", 100.0 * m.found.probability,
+                        joined(rivals));
   }
   if (!m.found.or_shape.empty()) {
     line += fmt::format("; or another effect of this shape ({})", m.found.or_shape);
   }
   return line + ".";
-}
-
-/// What a user can start from.
-std::string formula_sentence(const Diagnosis& d) {
-  const Unexplained& u = d.unexplained;
-  const std::string shape =
-      u.shape.empty() ? std::string() : fmt::format("Its shape resembles {}. ", u.shape);
-  if (u.suggestion.empty()) {
-    return shape + "No short formula of the recorded columns predicts held-out rows better.";
-  }
-  std::vector<std::string> names;
-  for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
-  return fmt::format(
-      "{}A formula to start from (a guess, as the expression of a term{}): {}; held-out RMS {:.3g} "
-      "deg/h, beside a noise floor of {:.3g}.",
-      shape, u.beside_found ? fmt::format(" beside {}", fmt::join(names, ", ")) : std::string(),
-      u.suggestion, u.heldout_rms, d.noise_floor);
 }
 
 std::string refusal_sentence(const Found& refused) {
@@ -157,35 +262,47 @@ std::string_view verdict_of(const Diagnosis& diagnosis) {
   return unknown ? "cannot_tell" : name_of(diagnosis.verdict);
 }
 
-std::vector<std::string> verdict_in_words(const Diagnosis& d) {
-  std::vector<std::string> out{verdict_sentence(d)};
-  if (!d.explained_by_thermometer.empty()) {
-    out.push_back(
-        fmt::format("What else the model misses, {} explains.", d.explained_by_thermometer));
-  }
-  const std::string_view lead = d.verdict == Verdict::kUnexplained && !d.far_from_floor
-                                    ? "Nearest of the catalogue, but not enough: "
-                                    : "";
-  for (const MissingEffect& m : d.missing) {
-    out.push_back(fmt::format("{}{}", lead, effect_sentence(m)));
-  }
-  for (const auto& set : d.ambiguous) {
-    out.push_back(fmt::format("Cannot tell apart: {}.", fmt::join(set, ", ")));
-  }
+const NextMeasurement* proposed_measurement(const Diagnosis& d) {
+  if (d.verdict != Verdict::kAmbiguous) return nullptr;
+  const auto next =
+      std::find_if(d.next_measurements.begin(), d.next_measurements.end(),
+                   [](const auto& n) { return n.purpose == NextMeasurement::Purpose::kTellApart; });
+  return next == d.next_measurements.end() ? nullptr : &*next;
+}
+
+std::string_view name_beside(const std::string& effect, const std::string& estimate) {
+  if (estimate == effect) return "";
+  const std::string_view name = estimate;
+  return name.starts_with(effect + ".") ? name.substr(effect.size() + 1) : name;
+}
+
+std::vector<std::string> VerdictWords::sentences() const {
+  std::vector<std::string> out{verdict, evidence, to_do};
+  out.insert(out.end(), details.begin(), details.end());
+  return out;
+}
+
+VerdictWords verdict_in_words(const Diagnosis& d, const std::string& next_command) {
+  VerdictWords out{.verdict = verdict_sentence(d),
+                   .evidence = evidence_sentence(d),
+                   .to_do = to_do_sentence(d, next_command),
+                   .details = {}};
+  std::vector<std::string>& more = out.details;
+  for (const MissingEffect& m : d.missing) more.push_back(effect_sentence(d, m));
   if (d.verdict == Verdict::kUnexplained) {
-    for (const Found& refused : d.refused) out.push_back(refusal_sentence(refused));
-    out.push_back(formula_sentence(d));
+    for (const Found& refused : d.refused) more.push_back(refusal_sentence(refused));
+    if (!d.unexplained.shape.empty()) {
+      more.push_back(fmt::format("What is left resembles {}.", d.unexplained.shape));
+    }
+    if (d.unexplained.suggestion.empty()) {
+      more.emplace_back("No short formula of the recorded columns predicts held-out rows better.");
+    }
   }
-  if (d.walk_beyond > 0.0) {
-    out.push_back(fmt::format(
-        "A random walk would explain it, but one {:.0f} times what nine of ten such gyros "
-        "stay below: a static record (--noise FILE) decides whether it is noise.",
-        d.walk_beyond));
-  }
-  for (const LeftOut& row : d.left_out) out.push_back(row.says + ".");
-  // Then what a comparison says is all that can be said.
+  for (const LeftOut& row : d.left_out) more.push_back(row.says + ".");
   if (!d.judged) {
-    out.insert(out.end(), d.before.sentences.begin(), d.before.sentences.end());
+    for (const std::string& sentence : d.before.sentences) {
+      if (sentence != out.evidence) more.push_back(sentence);
+    }
   }
   return out;
 }

@@ -11,6 +11,7 @@
 #include <map>
 
 #include "model/diagnose/diagnose.hpp"
+#include "model/diagnose/verdict_text.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "tests/model/models.hpp"
 
@@ -62,7 +63,7 @@ void expect_adequate(const Result<Diagnosis>& result) {
   EXPECT_TRUE(result->missing.empty());
   EXPECT_TRUE(std::isfinite(result->p_adequate));
   EXPECT_TRUE(std::isfinite(result->before.fit.rms));
-  EXPECT_FALSE(result->sentences.empty());
+  EXPECT_FALSE(verdict_in_words(*result, "").verdict.empty());
 }
 
 void expect_refused(const Result<Diagnosis>& result, const std::string& says) {
@@ -83,8 +84,10 @@ TEST(DiagnoseDegenerate, TooFewRowsAreSaidToTellNothing) {
     const auto result = diagnosed(patterned_sweep(rows));
     expect_adequate(result);
     EXPECT_FALSE(result->judged);
-    EXPECT_EQ(result->sentences.front().rfind("Cannot tell whether anything is missing", 0), 0U)
-        << result->sentences.front();
+    EXPECT_EQ(
+        verdict_in_words(*result, "").verdict.rfind("Cannot tell whether anything is missing", 0),
+        0U)
+        << verdict_in_words(*result, "").verdict;
   }
   expect_refused(diagnosed(patterned_sweep(1)), "found 1 usable rows, expected at least 2");
 }
@@ -250,15 +253,16 @@ TEST(DiagnoseDegenerate, OneScaleThatChangedBetweenTheTests) {
   ASSERT_EQ(result->missing.size(), 1U);
   EXPECT_EQ(result->missing[0].found.effect, "magnetic_change_between_runs");
   EXPECT_LT(result->missing[0].rms_after, 0.4 * result->before.fit.rms);
-  EXPECT_NE(result->sentences.back().find("common scale"), std::string::npos)
-      << result->sentences.back();
+  EXPECT_NE(verdict_in_words(*result, "").sentences().back().find("common scale"),
+            std::string::npos)
+      << verdict_in_words(*result, "").sentences().back();
 }
 
 TEST(DiagnoseDegenerate, TwoTestsThatDifferByNoiseAreNotExplained) {
   const auto result = of_two_tests({-0.015, -0.008, -0.055, 0.009, 0.006, -0.041});
   expect_adequate(result);
   EXPECT_FALSE(result->judged);
-  const auto& says = result->sentences;
+  const auto says = verdict_in_words(*result, "").sentences();
   EXPECT_TRUE(std::any_of(says.begin(), says.end(), [](const std::string& s) {
     return s.find("magnetic_linear_x") != std::string::npos &&
            s.find("not distinguishable from zero") != std::string::npos;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "model/diagnose/diagnose.hpp"
+#include "model/diagnose/verdict_text.hpp"
 #include "model/fit.hpp"
 #include "tests/model/models.hpp"
 
@@ -96,9 +97,9 @@ TEST(Sensitivity, ACauseThatSomebodyRecordedIsNamed) {
   const auto found =
       diagnosis_of(plus(table, [&](std::size_t i) { return 0.8 * table.column("supply_v")[i]; }));
   ASSERT_TRUE(found) << found.error().message;
-  ASSERT_EQ(found->missing.size(), 1U) << found->sentences.front();
+  ASSERT_EQ(found->missing.size(), 1U) << verdict_in_words(*found, "").verdict;
   EXPECT_EQ(found->missing[0].found.effect, "sensitivity(supply_v)");
-  EXPECT_EQ(name_of(found->verdict), "missing_effect") << found->sentences.front();
+  EXPECT_EQ(name_of(found->verdict), "missing_effect") << verdict_in_words(*found, "").verdict;
 }
 
 TEST(Sensitivity, AProductWithTheFieldIsNamed) {
@@ -107,7 +108,7 @@ TEST(Sensitivity, AProductWithTheFieldIsNamed) {
     return 0.5 * (table.column("supply_v")[i] - 5.0) * table.column("field_z_ut")[i] / 100.0;
   }));
   ASSERT_TRUE(found) << found.error().message;
-  ASSERT_FALSE(found->missing.empty()) << found->sentences.front();
+  ASSERT_FALSE(found->missing.empty()) << verdict_in_words(*found, "").verdict;
   EXPECT_EQ(found->missing[0].found.effect, "sensitivity_field_z(supply_v)");
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "model/diagnose/diagnose.hpp"
+#include "model/diagnose/verdict_text.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {
@@ -90,7 +91,7 @@ TEST(Thermometer, ReadingsInWholeDegreesAreNoErrorOfTheGyro) {
   table.set_column("rate_deg_per_h", rate);
   const auto found = diagnose(table, model_of_effects({"bias", "temperature_linear"}), {});
   ASSERT_TRUE(found) << found.error().message;
-  EXPECT_EQ(name_of(found->verdict), "adequate") << found->sentences.front();
+  EXPECT_EQ(name_of(found->verdict), "adequate") << verdict_in_words(*found, "").verdict;
   EXPECT_TRUE(found->missing.empty());
   ASSERT_FALSE(found->notes.empty());
   EXPECT_NE(found->notes.front().find("steps of 1 degC"), std::string::npos);

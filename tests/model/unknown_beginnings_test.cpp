@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "model/diagnose/diagnose.hpp"
+#include "model/diagnose/verdict_text.hpp"
 #include "tests/model/cut_out_chamber.hpp"
 
 namespace fogbench::model {
@@ -12,9 +13,9 @@ namespace {
 void expect_alone(const Table& table, const std::string& effect) {
   const auto d = diagnose(table, model_of_effects({"bias", "temperature_linear"}), {});
   ASSERT_TRUE(d) << d.error().message;
-  ASSERT_EQ(d->missing.size(), 1U) << d->sentences.front();
-  EXPECT_EQ(d->missing[0].found.effect, effect) << d->sentences.front();
-  EXPECT_NE(d->verdict, Verdict::kUnexplained) << d->sentences.front();
+  ASSERT_EQ(d->missing.size(), 1U) << verdict_in_words(*d, "").verdict;
+  EXPECT_EQ(d->missing[0].found.effect, effect) << verdict_in_words(*d, "").verdict;
+  EXPECT_NE(d->verdict, Verdict::kUnexplained) << verdict_in_words(*d, "").verdict;
 }
 
 TEST(UnknownBeginnings, ALagThatBeginsUnsettledIsNamedAlone) {
