@@ -61,7 +61,9 @@ std::string next_step(const model::Diagnosis& d, const DiagnoseOptions& options)
                : fmt::format("fogbench compare {} --model {}", data, model);
   }
   std::vector<std::string> effects;
-  for (const model::MissingEffect& m : d.missing) effects.push_back(m.found.effect);
+  for (const model::MissingEffect& m : d.missing) {
+    effects.insert(effects.end(), m.terms.begin(), m.terms.end());
+  }
   const bool in_catalogue = std::all_of(effects.begin(), effects.end(), [](const std::string& id) {
     return model::find_effect(id) != nullptr;
   });

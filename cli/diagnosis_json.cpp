@@ -9,16 +9,24 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// {"term": ..., "remanence": {"value": ..., "expanded_uncertainty": ..., "unit": "deg/h"}, ...}
+ordered_json loop_json(const model::MissingEffect& m) {
+  if (!m.loop) return nullptr;
+  ordered_json out{{"term", m.terms.front()}};
+  for (const model::Estimate* e : {&m.loop->remanence, &m.loop->coercive}) {
+    out[e->name] = {{"value", e->value},
+                    {"expanded_uncertainty", e->coverage_factor * e->standard_error},
+                    {"unit", e->unit}};
+  }
+  return out;
+}
+
 ordered_json missing_json(const model::MissingEffect& m) {
   ordered_json parameters = ordered_json::object(), coefficients = ordered_json::object(),
                errors = ordered_json::object(), rivals = ordered_json::array();
   for (const model::Estimate& e : m.estimates) {
     // "warm_up.tau" is an inner parameter, "earth_rate_projection.cos" a coefficient.
-    if (e.name == m.inner_name) {
-      parameters[std::string(model::name_beside(m.found.effect, e.name))] = e.value;
-    } else {
-      coefficients[e.name] = e.value;
-    }
+    (e.inner ? parameters[e.name.substr(e.name.rfind('.') + 1)] : coefficients[e.name]) = e.value;
     errors[e.name] = e.coverage_factor * e.standard_error;
   }
   for (const model::Rival& r : m.found.rivals) {
@@ -30,6 +38,7 @@ ordered_json missing_json(const model::MissingEffect& m) {
           {"parameters", parameters},
           {"coefficients", coefficients},
           {"expanded_uncertainty", errors},
+          {"loop", loop_json(m)},
           {"identified", !m.found.inner_at_edge},
           {"rms_after", m.rms_after},
           {"heldout_rms_after", m.heldout_rms_after},

@@ -94,6 +94,10 @@ Result<ExitStatus> run_effects(const EffectsOptions& options) {
       "  sensitivity(COLUMN), sensitivity_quadratic(COLUMN), sensitivity_rate(COLUMN) per hour,\n"
       "  sensitivity_lagged(COLUMN) with tau, sensitivity_temperature_rate(COLUMN) times dT/dt,\n"
       "  sensitivity_field_x(COLUMN), _y, _z times h\n"
+      "Of a hysteresis whose loop one width does not describe, with N = 1..8 weights of widths up "
+      "to\n"
+      "`width`: magnetic_loop_x(N), _y, _z, temperature_loop(N), and with saturation at `hs`\n"
+      "  magnetic_saturating_loop_x(N), _y, _z\n"
       "`fogbench effects EFFECT` tells what excites one and what it is confused with.\n");
   return ExitStatus::kDone;
 }

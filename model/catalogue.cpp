@@ -9,6 +9,7 @@
 
 #include "config/nearest_name.hpp"
 #include "model/effects/list.hpp"
+#include "model/effects/loop.hpp"
 #include "model/effects/sensitivity.hpp"
 
 namespace fogbench::model {
@@ -58,7 +59,9 @@ const Effect* find_effect(std::string_view id) {
   const auto all = catalogue();
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const Effect* e) { return e->info().id == id; });
-  return found == all.end() ? effects::find_sensitivity(id) : *found;
+  if (found != all.end()) return *found;
+  const Effect* loop = effects::find_loop(id);
+  return loop != nullptr ? loop : effects::find_sensitivity(id);
 }
 
 std::string unknown_effect(std::string_view id) {

@@ -38,6 +38,8 @@ struct EffectInfo {
   /// The regressor depends on earlier rows of the run: it is computed on whole signals, never on a
   /// block of them.
   bool has_history = false;
+  /// The effect of the catalogue that this is another form of; empty: it is one itself.
+  std::string_view form_of = {};
 };
 
 /// An effect's regressor on a table's signals.

@@ -211,8 +211,8 @@ Result<FitResult> hold(FitWork work) {
   }
   for (std::size_t i = 0; i < work.design.parameters().size(); ++i) {
     const DesignParameter& parameter = work.design.parameters()[i];
-    result.estimates.push_back(
-        {parameter.name, parameter.unit, work.inner[static_cast<Eigen::Index>(i)], 0.0, 2.0, true});
+    result.estimates.push_back({parameter.name, parameter.unit,
+                                work.inner[static_cast<Eigen::Index>(i)], 0.0, 2.0, true, true});
   }
   result.fitted = work.model;
   return std::move(result);

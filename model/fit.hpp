@@ -47,6 +47,7 @@ struct Estimate {
   double standard_error = 0.0;   ///< NaN when not determined; 0 when held
   double coverage_factor = 2.0;  ///< expanded uncertainty = factor * standard error (95.45 %)
   bool held = false;
+  bool inner = false;  ///< an inner parameter
 };
 
 /// A row that was not believed (bad_rows.hpp).

@@ -120,7 +120,7 @@ void fill_estimates(FitWork& work) {
     const DesignParameter& parameter = work.design.parameters()[i];
     const double value = work.inner[static_cast<Eigen::Index>(i)];
     result.estimates.push_back(
-        {parameter.name, parameter.unit, value, error_of(next), work.coverage, false});
+        {parameter.name, parameter.unit, value, error_of(next), work.coverage, false, true});
     if (std::isnan(error_of(next)) && result.degrees_of_freedom > 0.0) {
       result.warnings.push_back(
           fmt::format("{} has no influence on these data: it is not determined", parameter.name));

@@ -5,7 +5,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "model/bad_rows.hpp"
 #include "model/design.hpp"
@@ -14,10 +16,12 @@
 #include "model/diagnose/first_look.hpp"
 #include "model/diagnose/formula_search.hpp"
 #include "model/diagnose/heldout.hpp"
+#include "model/diagnose/loop_choice.hpp"
 #include "model/diagnose/next_measurement.hpp"
 #include "model/diagnose/refit_gates.hpp"
 #include "model/diagnose/thermometer.hpp"
 #include "model/diagnose/working_table.hpp"
+#include "model/effects/loop.hpp"
 #include "model/row_order.hpp"
 
 namespace fogbench::model {
@@ -30,6 +34,9 @@ using Eigen::VectorXd;
 // What was found explains the table when rows left out are missed by no more than this many noise
 // floors: the rest of a fit that was made without them, and chance, take less.
 constexpr double kFarFromFloor = 1.6;
+// A loop takes the place of a play when rows left out are missed by less than this share, or when
+// fewer effects predict them as well.
+constexpr double kLoopPays = 0.85;
 
 std::string name_of_parameter(const Candidate& candidate) {
   return candidate.parameter_name.empty() ? std::string(candidate.parameter->name)
@@ -52,6 +59,20 @@ config::ModelFile extended_by(config::ModelFile model, const Library& library,
   }
   return model;
 }
+
+/// A search, and what it was made with.
+struct Searched {
+  Searched(Library tried, const NoiseShapes& shapes, const WorkingTable& table,
+           const BaseColumns& base)
+      : library(std::move(tried)),
+        whitened(shapes, library),
+        input{whitened, table.windows(), table.bench_rows(), base.columns, base.y} {}
+
+  const Library library;
+  const WhitenedLibrary whitened;
+  const SearchInput input;
+  SearchResult result;
+};
 
 /// The work of one diagnosis, part by part.
 class Work {
@@ -101,33 +122,21 @@ class Work {
 
     const Signals signals(table_.fine(), model_.reference_temperature_c);
     if (has_calendar_time(signals)) d_.notes.emplace_back(kCalendarNote);
-    config::ModelFile searched = d_.before.fit.fitted;
-    if (table_.has_quiet_record()) searched.terms.push_back(quiet_bias());
-    const auto base = base_columns(table_, signals, searched);
+    config::ModelFile before_search = d_.before.fit.fitted;
+    if (table_.has_quiet_record()) before_search.terms.push_back(quiet_bias());
+    const auto base = base_columns(table_, signals, before_search);
     if (!base) return base.error();
     const auto shapes = NoiseShapes::make(table_.windows(), search_prior());
     if (!shapes) return shapes.error();
 
-    tell("evaluating the candidates", 0.2);
     const LibrarySource source{table_, signals, model_, options_.candidates};
-    auto library = make_library(source);
-    if (!library) return library.error();
-
-    tell("searching for what is missing", 0.3);
-    const WhitenedLibrary whitened(*shapes, *library);
-    const SearchInput input_of_search{whitened, table_.windows(), table_.bench_rows(),
-                                      base->columns, base->y};
-    SearchOptions search_options;
-    search_options.first_level = kShareOfEffects * options_.false_alarm_rate;
-    search_options.outside_level = kShareOfShapes * options_.false_alarm_rate;
-    search_options.seed = options_.seed;
-    search_options.refit = [&](const std::vector<Found>& named) {
-      climb_ladder(*library, named);
-      return refused_by_refit(d_.missing, d_.ladder, *library);
-    };
-    SearchResult found = search(input_of_search, search_options);
+    auto searched = search_in(source, *shapes, *base);
+    if (!searched) return searched.error();
+    look_for_loops(source, *shapes, *base, *searched);
+    const SearchInput& input_of_search = (*searched)->input;
+    const SearchResult& found = (*searched)->result;
     take_over(found);
-    d_.not_testable = library->not_testable;
+    d_.not_testable = (*searched)->library.not_testable;
     d_.judged = !found.p_of_step.empty() || found.p_outside < 1.0;
     if (!found.p_of_step.empty()) d_.p_adequate = found.p_of_step.front();
     doubt_the_thermometer(found);
@@ -159,6 +168,103 @@ class Work {
     for (FitResult* fit : {&d_.before.fit, &d_.after}) fit->rows = table_.bench_rows_of(fit->rows);
     tell("done", 1.0);
     return std::move(d_);
+  }
+
+  /// All that the library offers; leaves the ladder of what was found.
+  Result<std::unique_ptr<Searched>> search_in(const LibrarySource& source,
+                                              const NoiseShapes& shapes, const BaseColumns& base) {
+    tell("evaluating the candidates", 0.2);
+    auto library = make_library(source);
+    if (!library) return library.error();
+    tell("searching for what is missing", 0.3);
+    auto out = std::make_unique<Searched>(std::move(*library), shapes, table_, base);
+    SearchOptions options;
+    options.first_level = kShareOfEffects * options_.false_alarm_rate;
+    options.outside_level = kShareOfShapes * options_.false_alarm_rate;
+    options.seed = options_.seed;
+    options.refit = [&](const std::vector<Found>& named) {
+      climb_ladder(out->library, named);
+      return refused_by_refit(d_.missing, d_.ladder, out->library);
+    };
+    out->result = search(out->input, options);
+    return out;
+  }
+
+  /// Where rows left out pay for more than one play, searches again with that form of the loop in
+  /// the play's place, and keeps what is found where it pays there too. Once more when something
+  /// is found beside the loop, which its form was chosen without.
+  void look_for_loops(LibrarySource source, const NoiseShapes& shapes, const BaseColumns& base,
+                      std::unique_ptr<Searched>& searched) {
+    for (int turn = 0; turn < 2; ++turn) {
+      const std::vector<config::ModelTerm> before = std::exchange(source.forms, {});
+      for (const std::string& effect : hystereses_of(searched->result)) {
+        tell("looking for the form of a loop", 0.6);
+        auto form = best_loop(effect, table_, beside(*searched, effect, turn), fit_options());
+        if (form) source.forms.push_back(std::move(*form));
+      }
+      const auto same = [](const auto& a, const auto& b) { return a.effect == b.effect; };
+      if (source.forms.empty() || std::equal(before.begin(), before.end(), source.forms.begin(),
+                                             source.forms.end(), same)) {
+        return;
+      }
+      Diagnosis last = d_;
+      std::vector<FitResult> fits = fits_;
+      auto looped = search_in(source, shapes, base);
+      if (!looped || !loops_pay(source.forms, last)) {
+        d_ = std::move(last);
+        fits_ = std::move(fits);
+        return;
+      }
+      searched = std::move(*looped);
+      if (searched->result.found.size() < 2) return;
+    }
+  }
+
+  /// The hysteresis effects that were found, refused, or could not be told from what was found.
+  static std::vector<std::string> hystereses_of(const SearchResult& result) {
+    std::vector<std::string> out;
+    const auto add = [&](const std::string& name) {
+      const bool known = std::find(out.begin(), out.end(), name) != out.end();
+      if (!known && !effects::loops_of(name).empty()) out.push_back(name);
+    };
+    for (const auto* list : {&result.found, &result.refused}) {
+      for (const Found& f : *list) {
+        add(f.effect);
+        for (const Rival& rival : f.rivals) add(rival.effect);
+      }
+    }
+    return out;
+  }
+
+  /// The model with what was found beside the effect. Of what depends on the same signal only the
+  /// first `of_same_signal`: the others may be the rest of the loop.
+  config::ModelFile beside(const Searched& searched, const std::string& effect,
+                           int of_same_signal) const {
+    const std::string_view signal = find_effect(effect)->info().signals.front();
+    std::vector<Found> others;
+    for (const Found& f : searched.result.found) {
+      const Effect* known = find_effect(f.effect);
+      if (known == nullptr || f.effect == effect) continue;
+      const auto& needed = known->info().signals;
+      const bool apart = std::find(needed.begin(), needed.end(), signal) == needed.end();
+      if (apart || of_same_signal-- > 0) others.push_back(f);
+    }
+    return extended_by(model_, searched.library, others);
+  }
+
+  /// A loop stands in the last fit, with weights of one sign, and rows left out are predicted
+  /// clearly better than before, or as well with fewer effects.
+  bool loops_pay(const std::vector<config::ModelTerm>& forms, const Diagnosis& before) const {
+    const bool stands = std::any_of(forms.begin(), forms.end(), [&](const auto& form) {
+      return std::any_of(d_.missing.begin(), d_.missing.end(),
+                         [&](const MissingEffect& m) { return m.terms.front() == form.effect; });
+    });
+    const bool one_sign = std::all_of(forms.begin(), forms.end(), [&](const auto& form) {
+      return of_one_sign(d_.after, form.effect);
+    });
+    const double share = d_.missing.size() < before.missing.size() ? 1.0 : kLoopPays;
+    return stands && one_sign &&
+           d_.ladder.back().heldout_rms < share * before.ladder.back().heldout_rms;
   }
 
   void tell(const std::string& part, double share) const {
@@ -222,13 +328,13 @@ class Work {
       }
       d_.ladder.push_back({f.effect, missing.rms_after, missing.heldout_rms_after});
       for (const config::ModelTerm& term : candidate.terms) missing.terms.push_back(term.effect);
-      if (candidate.parameter) {
-        missing.inner_name = fmt::format("{}.{}", f.effect, name_of_parameter(candidate));
-      }
       d_.missing.push_back(std::move(missing));
     }
     d_.noise = d_.after.noise.noise;
-    for (MissingEffect& missing : d_.missing) take_estimates(d_.after, missing);
+    for (MissingEffect& missing : d_.missing) {
+      missing.loop = loop_figures(d_.after, missing.terms.front(), d_.table);
+      take_estimates(d_.after, missing);
+    }
   }
 
   /// What the search says beside what is in the ladder already.

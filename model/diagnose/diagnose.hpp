@@ -7,12 +7,14 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "config/model_file.hpp"
 #include "config/result.hpp"
 #include "model/compare.hpp"
+#include "model/diagnose/loop_figures.hpp"
 #include "model/diagnose/next_measurement.hpp"
 #include "model/diagnose/search.hpp"
 #include "model/table.hpp"
@@ -33,12 +35,12 @@ bool found_adequate(const Diagnosis& diagnosis);
 struct MissingEffect {
   Found found;
   std::vector<std::string>
-      terms;               ///< what it adds to the model: itself, but for changes between runs
-  std::string inner_name;  ///< of the estimate that is its inner parameter; empty: none
+      terms;  ///< what it adds to the model: itself, but for changes between runs and loops
   std::vector<Estimate> estimates;  ///< its coefficients and inner parameters, after the last refit
-  /// The data do not say what its inner parameter is (standard error NaN); the coefficients'
-  /// uncertainties are those at the value that fits best.
+  /// The data do not say what its inner parameters are (standard error NaN); the coefficients'
+  /// uncertainties are those at the values that fit best.
   bool inner_open = false;
+  std::optional<LoopFigures> loop;  ///< of a hysteresis
   double rms_after = 0.0;
   double heldout_rms_after = 0.0;
 };

@@ -99,7 +99,26 @@ void add_effect(LibraryBuilder& builder, const Effect& effect) {
     candidate.curve_over = info.signals.front();
   }
   if (!info.parameters.empty()) candidate.parameter = info.parameters.front();
-  for (Shape& shape : shapes_of(effect, signals)) {
+  std::vector<Shape> shapes;
+  const auto& forms = builder.source().forms;
+  const auto form = std::find_if(forms.begin(), forms.end(), [&](const config::ModelTerm& term) {
+    return find_effect(term.effect)->info().form_of == info.id;
+  });
+  if (form == forms.end()) {
+    shapes = shapes_of(effect, signals);
+  } else {
+    const Effect& other = *find_effect(form->effect);
+    std::vector<double> further;
+    for (std::size_t i = 1; i < other.info().parameters.size(); ++i) {
+      further.push_back(form->parameters.at(std::string(other.info().parameters[i].name)));
+    }
+    shapes = shapes_of_form(other, signals, further);
+    candidate.terms = {*form};
+    candidate.parameter = other.info().parameters.front();
+    candidate.own = static_cast<Eigen::Index>(other.info().columns.size());
+    candidate.units.assign(other.info().units.begin(), other.info().units.end());
+  }
+  for (Shape& shape : shapes) {
     candidate.shapes.push_back([shape = std::move(shape), source = builder.source()](double inner) {
       return LibraryBuilder(source).averaged(shape(inner));
     });
@@ -229,8 +248,11 @@ double Candidate::spacing(double inner) const {
 Result<Library> make_library(const LibrarySource& source) {
   LibraryBuilder builder(source);
   const auto stands_in = [&](std::string_view effect) {
-    return std::any_of(source.model.terms.begin(), source.model.terms.end(),
-                       [&](const config::ModelTerm& term) { return term.effect == effect; });
+    return std::any_of(
+        source.model.terms.begin(), source.model.terms.end(), [&](const config::ModelTerm& term) {
+          const Effect* known = find_effect(term.effect);
+          return term.effect == effect || (known != nullptr && known->info().form_of == effect);
+        });
   };
   for (const Effect* effect : catalogue()) {
     if (!stands_in(effect->info().id)) add_effect(builder, *effect);

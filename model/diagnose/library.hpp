@@ -73,10 +73,14 @@ struct LibrarySource {
   const Signals& signals;  ///< of table.fine()
   const config::ModelFile& model;
   const std::vector<config::ModelTerm>& users_terms;
+  /// Forms that stand in the place of the effects that they are forms of (EffectInfo::form_of),
+  /// each with values for its inner parameters.
+  std::vector<config::ModelTerm> forms = {};
 };
 
-/// Effects that stand in the model already are left out; effects whose signals are missing or never
-/// excited are listed with the reason. Errors: kBadInput: a user's term that cannot be evaluated.
+/// Effects that stand in the model already, themselves or in another form, are left out; effects
+/// whose signals are missing or never excited are listed with the reason. Errors: kBadInput: a
+/// user's term that cannot be evaluated.
 Result<Library> make_library(const LibrarySource& source);
 
 /// Smooth functions of each variable that moves, in blocks: what an adequate model leaves flat.

@@ -9,7 +9,7 @@
 
 namespace fogbench::model {
 
-/// Coefficients and inner parameter. Where the two are one number in these data (a saturation that
+/// Coefficients and inner parameters. Where these are one number in these data (a saturation that
 /// hardly bends), the coefficients are those at this value of the parameter, which is said to be
 /// open (MissingEffect::inner_open).
 void take_estimates(const FitResult& refit, MissingEffect& missing);

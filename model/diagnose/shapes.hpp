@@ -13,11 +13,14 @@
 
 namespace fogbench::model {
 
-/// An effect's columns on the rows of the signals, at a value of its inner parameter (ignored where
-/// it has none), then those of how its memory began.
+/// An effect's columns on the rows of the signals, at a value of its first inner parameter (ignored
+/// where it has none), then those of how its memory began.
 using Shape = std::function<Eigen::MatrixXd(double)>;
 
 /// The catalogue's own shape first. Both arguments must outlive the shapes.
 std::vector<Shape> shapes_of(const Effect& effect, const Signals& signals);
+/// Those of a form of an effect (EffectInfo::form_of), its further inner parameters near `further`.
+std::vector<Shape> shapes_of_form(const Effect& form, const Signals& signals,
+                                  const std::vector<double>& further);
 
 }  // namespace fogbench::model

@@ -23,20 +23,44 @@ std::string names_found(const Diagnosis& d) {
   return joined(names);
 }
 
+/// "0.012 +- 0.001 deg/h"; without an uncertainty where it is not known.
+std::string value_text(const Estimate& e) {
+  const double uncertainty = e.coverage_factor * e.standard_error;
+  if (!std::isfinite(uncertainty)) return fmt::format("{:.3g} {}", e.value, e.unit);
+  const config::Rounded r = config::rounded(e.value, uncertainty);
+  return fmt::format("{} +- {} {}", r.value, r.uncertainty, e.unit);
+}
+
+/// "remanence 0.012 +- 0.001 deg/h, coercive field 31 +- 2 uT".
+std::string loop_text(const LoopFigures& loop) {
+  std::vector<std::string> parts;
+  for (const Estimate* e : {&loop.remanence, &loop.coercive}) {
+    parts.push_back(e->name + " " + (std::isfinite(e->value) ? value_text(*e) : "not determined"));
+  }
+  return joined(parts);
+}
+
+/// Whether the effect is in the model in another form, whose coefficients say nothing to people.
+bool in_another_form(const MissingEffect& m) {
+  return m.loop && m.terms.front() != m.found.effect;
+}
+
 /// "temperature_gradient = -0.269 +- 0.007 deg/h/degC", "bias_step = 0.55 +- 0.05 deg/h, t0 = ...".
 std::string estimates_text(const MissingEffect& m) {
+  if (in_another_form(m)) {
+    return fmt::format("{}, a loop of {}", m.found.effect, loop_text(*m.loop));
+  }
   std::vector<std::string> parts;
   for (const Estimate& e : m.estimates) {
     const std::string_view beside = name_beside(m.found.effect, e.name);
     const std::string_view name = parts.empty() ? std::string_view(e.name) : beside;
     if (std::isnan(e.value)) {
       parts.push_back(fmt::format("{} not determined", name));
-    } else if (m.inner_open && e.name == m.inner_name) {
+    } else if (m.inner_open && e.inner) {
       parts.push_back(
           fmt::format("{} = {:.3g} {}, which these data do not determine", name, e.value, e.unit));
     } else {
-      const config::Rounded r = config::rounded(e.value, e.coverage_factor * e.standard_error);
-      parts.push_back(fmt::format("{} = {} +- {} {}", name, r.value, r.uncertainty, e.unit));
+      parts.push_back(fmt::format("{} = {}", name, value_text(e)));
     }
   }
   return parts.empty() ? m.found.effect : joined(parts);
@@ -195,12 +219,14 @@ std::string effect_sentence(const Diagnosis& d, const MissingEffect& m) {
                     (d.verdict == Verdict::kAmbiguous && !set_of(d, m.found.effect));
   std::string line = fmt::format("{}: {}", said ? m.found.effect : estimates_text(m),
                                  probability_text(m.found.p_value));
+  if (m.loop && !in_another_form(m)) line += "; a loop of " + loop_text(*m.loop);
+  if (in_another_form(m)) line += fmt::format("; in the model as {}", m.terms.front());
   const HeldoutVote& vote = m.found.heldout;
   if (vote.folds > 0) {
     line += fmt::format("; {} of {} parts of the data are predicted better with it than without",
                         vote.better, vote.folds);
   }
-  if (!m.found.more.empty()) {
+  if (!m.found.more.empty() && !in_another_form(m)) {
     line += "; one value of its inner parameter does not suffice, its shape bends";
   }
   if (!m.found.rivals.empty()) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -194,6 +195,25 @@ TEST(Effects, HistoryStartsAnewInEveryRunAndBridgesMissingRows) {
   EXPECT_EQ(found[3], 1.0);
   EXPECT_EQ(found[4], 0.0);
   EXPECT_EQ(found[5], 0.0);
+}
+
+TEST(Effects, ALoopOfPartsIsTheMeanOfItsPlays) {
+  // One part of the widths 0 ... 1, as eight plays; two parts are its halves.
+  std::vector<double> mean(5, 0.0);
+  for (int i = 0; i < 8; ++i) {
+    const auto play = regressor("magnetic_hysteresis_z", {(i + 0.5) / 8.0});
+    for (std::size_t row = 0; row < mean.size(); ++row) mean[row] += play[row] / 8.0;
+  }
+  EXPECT_THAT(regressor("magnetic_loop_z(1)", {1.0}), near(mean));
+  EXPECT_THAT(regressor("magnetic_loop_z(2)", {2.0}), near(mean));
+  EXPECT_THAT(regressor("magnetic_saturating_loop_z(1)", {1.0, 1e6}), near(mean, 1e-9));
+  const auto flat = regressor("magnetic_saturating_loop_z(1)", {1.0, 0.5});
+  EXPECT_LT(*std::max_element(flat.begin(), flat.end()), 0.5);
+  EXPECT_EQ(find_effect("temperature_loop(3)")->info().form_of, "temperature_hysteresis");
+  for (const char* none : {"magnetic_loop_z", "magnetic_loop_z(0)", "magnetic_loop_z(9)",
+                           "temperature_saturating_loop(2)", "(2)"}) {
+    EXPECT_EQ(find_effect(none), nullptr) << none;
+  }
 }
 
 TEST(Signals, RowOrderDoesNotMatter) {

@@ -89,7 +89,7 @@ std::string contradiction_in(const model::Diagnosis& d) {
     }
     bool stands = false, known = false;
     for (const model::Estimate& e : m.estimates) {
-      if (e.name == m.inner_name || !std::isfinite(e.standard_error)) continue;
+      if (e.inner || !std::isfinite(e.standard_error)) continue;
       known = true;
       stands = stands || std::abs(e.value) >= e.coverage_factor * e.standard_error;
     }
