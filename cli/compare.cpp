@@ -36,14 +36,14 @@ struct CompareOptions {
 };
 
 /// What to type next, as a shell takes it.
-std::string next_step(const model::Comparison& c, const CompareOptions& options) {
+std::string next_step(const model::Comparison& c, const CompareOptions& options, bool fitted) {
   const std::string named =
       fmt::format("{} --model {}", data_arguments(options.data), shell_word(options.model));
   if (c.as_is) return fmt::format("fogbench compare {}   # fits the coefficients first", named);
   if (c.p_adequate < model::kAdequate) {
     return fmt::format("fogbench diagnose {}   # says which effect is missing", named);
   }
-  return fmt::format("fogbench fit {} -o fitted.json", named);
+  return command_with_adequate(options.data, options.model, fitted);
 }
 
 /// The worst ranges; those that the fit leaves no freedom are not worth a line.
@@ -68,9 +68,9 @@ void print_ranges(const model::Comparison& c, std::string_view unit) {
     }
     ++shown;
     std::vector<std::string> cells{
-        model::place_of(r), std::to_string(r.rows), fmt::format("{:.4g}", r.observed),
-        fmt::format("{:.4g}", r.observed - r.residual), fmt::format("{:.3g}", r.residual)};
-    if (offsets) cells.push_back(fmt::format("{:.3g}", r.offset));
+        model::place_of(r), std::to_string(r.rows), config::significant(r.observed, 4),
+        config::significant(r.observed - r.residual, 4), config::significant(r.residual, 3)};
+    if (offsets) cells.push_back(config::significant(r.offset, 3));
     if (c.noise_known) {
       cells.push_back(fmt::format("{:.1f}", r.z));
       cells.push_back(r.p_family_wise < 1e-4 ? "< 0.0001" : fmt::format("{:.2g}", r.p_family_wise));
@@ -83,7 +83,9 @@ void print_ranges(const model::Comparison& c, std::string_view unit) {
   fmt::print("\n");
 }
 
-void print_text(const model::Comparison& c, const CompareOptions& options, std::string_view unit) {
+void print_text(const model::Comparison& c, const CompareOptions& options,
+                const config::ModelFile& model) {
+  const std::string_view unit = config::unit_of(model.observable);
   using Align = TextTable::Align;
   TextTable table({{"term", "", Align::kLeft},
                    {"estimate", ""},
@@ -96,14 +98,14 @@ void print_text(const model::Comparison& c, const CompareOptions& options, std::
   }
   constexpr std::size_t kLead = 2;  // the verdict, and what carries it
   for (std::size_t i = 0; i < kLead; ++i) fmt::print("{}\n", c.sentences[i]);
-  fmt::print("Next: {}\n\n{}\n", next_step(c, options), table.text());
+  fmt::print("Next: {}\n\n{}\n", next_step(c, options, model.fit.has_value()), table.text());
   for (const std::string& warning : c.fit.warnings) fmt::print("warning: {}\n", warning);
   print_ranges(c, unit);
   for (std::size_t i = kLead; i < c.sentences.size(); ++i) fmt::print("{}\n", c.sentences[i]);
   if (!options.report.empty()) fmt::print("\nReport: {}\n", options.report);
 }
 
-nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options) {
+nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options, bool fitted) {
   nlohmann::json estimates = nlohmann::json::array(), regions = nlohmann::json::array(),
                  changes = nlohmann::json::array();
   for (const model::Estimate& e : c.fit.estimates) {
@@ -169,7 +171,7 @@ nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options
           {"left_out", left_out},
           {"warnings", c.fit.warnings},
           {"sentences", c.sentences},
-          {"next", next_step(c, options)}};
+          {"next", next_step(c, options, fitted)}};
 }
 
 Result<ExitStatus> run_compare(const CompareOptions& options) {
@@ -203,9 +205,9 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
     if (!written) return written.error();
   }
   if (options.json) {
-    print_json(to_json(*result, options));
+    print_json(to_json(*result, options, model->fit.has_value()));
   } else {
-    print_text(*result, options, config::unit_of(model->observable));
+    print_text(*result, options, *model);
   }
   const bool no = options.check && result->p_adequate < model::kAdequate;
   return no ? ExitStatus::kNo : ExitStatus::kDone;

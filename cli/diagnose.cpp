@@ -20,6 +20,7 @@
 #include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
+#include "config/rounding.hpp"
 #include "config/units.hpp"
 #include "model/diagnose/diagnose.hpp"
 #include "model/diagnose/diagnosis_report.hpp"
@@ -45,14 +46,14 @@ struct DiagnoseOptions {
   bool json = false;
 };
 
-/// What to type next.
-std::string next_step(const model::Diagnosis& d, const DiagnoseOptions& options) {
+/// What to type next; `fitted`: the model came with its coefficients.
+std::string next_step(const model::Diagnosis& d, const DiagnoseOptions& options, bool fitted) {
   const std::string data = data_arguments(options.data), model = shell_word(options.model);
   if (!options.output.empty()) {
     return fmt::format("fogbench compare {} --model {}", data, shell_word(options.output));
   }
   if (d.verdict == model::Verdict::kNothingMissing) {
-    return fmt::format("fogbench fit {} --model {} -o fitted.json", data, model);
+    return command_with_adequate(options.data, options.model, fitted);
   }
   // Nothing that could be added: a look at the residual is next.
   if (d.missing.empty() || (d.verdict == model::Verdict::kUnexplained && !d.far_from_floor)) {
@@ -184,17 +185,18 @@ void print_each(const OfEach& one, std::string_view unit) {
   }
   const model::Diagnosis& d = **one.result;
   const double rms = d.ladder.empty() ? d.after.rms : d.ladder.back().rms;
-  fmt::print("{}: {}: {} RMS {:.3g} {}, noise floor {:.3g}.\n", name, model::verdict_of(d),
-             model::verdict_in_words(d, "").verdict, rms, unit, d.noise_floor);
+  fmt::print("{}: {}: {} RMS {} {}, noise floor {}.\n", name, model::verdict_of(d),
+             model::verdict_in_words(d, "").verdict, config::significant(rms, 3), unit,
+             config::significant(d.noise_floor, 3));
 }
 
-ordered_json json_of_each(const OfEach& one) {
+ordered_json json_of_each(const OfEach& one, bool fitted) {
   ordered_json out{{"data", data_name(one.options.data)}};
   if (!*one.result) {
     out["error"] = one.result->error().message;
   } else {
     const model::Diagnosis& d = **one.result;
-    out.update(diagnosis_json(d, next_step(d, one.options)));
+    out.update(diagnosis_json(d, next_step(d, one.options, fitted)));
   }
   return out;
 }
@@ -232,7 +234,7 @@ Result<ExitStatus> run_each(const DiagnoseOptions& options) {
                                        : config::exit_status(one.result->error().code);
     worst = std::max(worst, its);
     if (options.json) {
-      documents.push_back(json_of_each(one));
+      documents.push_back(json_of_each(one, given.model.fit.has_value()));
     } else {
       print_each(one, config::unit_of(given.model.observable));
     }
@@ -252,7 +254,7 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
   const auto result = diagnosed(options, given);
   clear_progress();
   if (!result) return result.error();
-  const std::string next = next_step(*result, options);
+  const std::string next = next_step(*result, options, given.model.fit.has_value());
   const model::VerdictWords words = model::verdict_in_words(*result, next);
   if (page) {
     const Status written =

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/output.hpp"
+#include "config/rounding.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -37,7 +38,7 @@ class GroupedLines {
 void print_bounds(const std::vector<model::Bound>& bounds) {
   GroupedLines lines;
   for (const model::Bound& b : bounds) {
-    lines.add(b.unit, fmt::format("{} {:.2g}", b.effect, b.absent_or_below));
+    lines.add(b.unit, b.effect + " " + config::significant(b.absent_or_below, 2));
   }
   lines.print("Absent, or smaller than this (95 %):");
 }
@@ -59,9 +60,7 @@ std::string few_of(const std::vector<std::string>& names) {
 }
 
 void print_ladder(const model::Diagnosis& d, const std::string& in) {
-  const auto number = [](double value) {
-    return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string("-");
-  };
+  const auto number = [](double value) { return config::significant(value, 3); };
   TextTable ladder({{"model", "", TextTable::Align::kLeft},
                     {"RMS", in},
                     {"held-out RMS", in},
@@ -112,8 +111,9 @@ void print_diagnosis(const model::Diagnosis& d, const model::VerdictWords& words
   for (const std::string& note : d.notes) fmt::print("note: {}\n", note);
   for (const std::string& warning : d.after.warnings) fmt::print("warning: {}\n", warning);
   print_failures(d);
-  print_next(d, true,
-             proposed_measurement(d) ? "What tells them apart, too:" : "What tells them apart:");
+  print_next(
+      d, true,
+      model::proposed_measurement(d) ? "What tells them apart, too:" : "What tells them apart:");
   fmt::print("\n");
   print_bounds(d.bounds);
   if (!d.bounds.empty() && !d.not_testable.empty()) fmt::print("\n");

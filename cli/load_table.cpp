@@ -128,6 +128,14 @@ std::string data_arguments(const DataOptions& options) {
   return out.substr(out.empty() ? 0 : 1);
 }
 
+std::string command_with_adequate(const DataOptions& options, const std::string& model,
+                                  bool fitted) {
+  const bool use = fitted && options.data.size() == 1;  // what compensate takes
+  return fmt::format("fogbench {} {} --model {} -o {}", use ? "compensate" : "fit",
+                     data_arguments(options), shell_word(model),
+                     use ? "compensated.csv" : "fitted.json");
+}
+
 Result<model::Table> load_table(const DataOptions& options, std::size_t most_rows) {
   const auto renames = parse_renames(options.columns);
   if (!renames) return renames.error();

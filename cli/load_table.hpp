@@ -40,6 +40,10 @@ std::string data_name(const DataOptions& options);
 /// DATA and its options as a shell takes them, for a command that is proposed next.
 std::string data_arguments(const DataOptions& options);
 
+/// The command that goes on from a model which lacks nothing: fit it, or use it where it is fitted.
+std::string command_with_adequate(const DataOptions& options, const std::string& model,
+                                  bool fitted);
+
 /// The tables one after the other. With several, the run of each row is "DATA/run", so that test 1
 /// of two records stays two runs.
 /// Of a longer CSV file neighbouring rows are averaged (model/table.hpp, read_csv).

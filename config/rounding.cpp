@@ -44,4 +44,11 @@ Rounded rounded(double value, double uncertainty) {
   return {to_place(value, place), to_place(uncertainty, place)};
 }
 
+std::string significant(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const int place = exponent_of(value, digits) - digits + 1;
+  return place > 0 && place <= kMostZeros ? to_place(value, place)
+                                          : fmt::format("{:.{}g}", value, digits);
+}
+
 }  // namespace fogbench::config

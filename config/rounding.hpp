@@ -14,4 +14,8 @@ struct Rounded {
 /// Without a usable uncertainty (zero, not finite) the value has six digits. NaN is "-".
 Rounded rounded(double value, double uncertainty);
 
+/// A number without an uncertainty, to so many significant digits: "1070" where "%.3g" has a power
+/// of ten, and the same elsewhere. "-" where it is not finite.
+std::string significant(double value, int digits);
+
 }  // namespace fogbench::config

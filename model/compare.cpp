@@ -9,6 +9,7 @@
 #include <numbers>
 #include <set>
 
+#include "config/rounding.hpp"
 #include "config/units.hpp"
 #include "model/conclusions.hpp"
 #include "model/diagnose/first_look.hpp"
@@ -83,9 +84,10 @@ Cells make_cells(const Table& table, const FitResult& fit) {
 
 std::string describe(const Region& region, std::string_view unit, bool noise_known) {
   const Range range{region.where, region.from, region.to};
-  std::string text = fmt::format("{} the model is {:.3g} {} {} the measurements{}",
-                                 place_in_words(region.variable, range), std::abs(region.offset),
-                                 unit, region.offset < 0.0 ? "above" : "below",
+  std::string text = fmt::format("{} the model is {} {} {} the measurements{}",
+                                 place_in_words(region.variable, range),
+                                 config::significant(std::abs(region.offset), 3), unit,
+                                 region.offset < 0.0 ? "above" : "below",
                                  region.drift_allowed ? ", slow drift allowed for" : "");
   if (noise_known) {
     text += fmt::format(" (z = {:.1f}, {})", std::abs(region.z),

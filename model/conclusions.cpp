@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "config/rounding.hpp"
 #include "config/units.hpp"
 #include "model/partition.hpp"
 #include "model/repeatability.hpp"
@@ -97,15 +98,16 @@ std::string verdict_of_compare(const Comparison& c) {
 }
 
 std::string evidence_of_compare(const Comparison& c, std::string_view unit) {
-  std::string text = fmt::format("{} leaves an RMS residual of {:.3g} {} over {} rows",
+  std::string text = fmt::format("{} leaves an RMS residual of {} {} over {} rows",
                                  c.as_is ? "The model, held as given," : "The fitted model",
-                                 c.fit.rms, unit, c.fit.rows.size());
+                                 config::significant(c.fit.rms, 3), unit, c.fit.rows.size());
   if (!std::isfinite(c.noise_floor)) return text + ".";
   const bool fails = c.p_adequate < kAdequate;
   const std::string_view which = !c.fit.coloured ? "the stated noise"
                                  : fails         ? "white noise"
                                                  : "noise";
-  return text + fmt::format(", where {} alone would leave {:.3g}.", which, c.noise_floor);
+  return text + fmt::format(", where {} alone would leave {}.", which,
+                            config::significant(c.noise_floor, 3));
 }
 
 void say_noise(Comparison& c, std::string_view unit, const std::string& noise_says) {
@@ -129,8 +131,9 @@ void say_worst_range(Comparison& c, const Table& table, const config::ModelFile&
   if (fails && worst.p_family_wise >= kAdequate) return;
   c.sentences.push_back(worst.says);
   c.sentences.push_back(
-      fmt::format("It is the worst of {}; the model gives {:.4g}, the measurements {:.4g} {}.",
-                  c.regions.size(), worst.observed - worst.residual, worst.observed, unit));
+      fmt::format("It is the worst of {}; the model gives {}, the measurements {} {}.",
+                  c.regions.size(), config::significant(worst.observed - worst.residual, 4),
+                  config::significant(worst.observed, 4), unit));
   if (c.as_is && (fails || !c.noise_known)) say_rounding(c, table, model, unit);
 }
 

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <vector>
 
+#include "config/rounding.hpp"
+
 namespace fogbench::model {
 
 using Eigen::Index;
@@ -67,9 +69,9 @@ double NoiseFloor::beside(double left) const {
 }
 
 std::string NoiseFloor::parts_in_words(std::string_view unit) const {
-  return fmt::format(
-      "its white part {:.3g} {}, with slow noise {:.3g} to {:.3g} in 9 of 10 records", white, unit,
-      low, high);
+  return fmt::format("its white part {} {}, with slow noise {} to {} in 9 of 10 records",
+                     config::significant(white, 3), unit, config::significant(low, 3),
+                     config::significant(high, 3));
 }
 
 NoiseFloor noise_floor(const NoiseShapes& shapes, const NoiseEstimate& estimate,

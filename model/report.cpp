@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/rounding.hpp"
 #include "config/units.hpp"
 #include "model/report_page.hpp"
 #include "model/report_plots.hpp"
@@ -29,11 +30,12 @@ std::string regions_table(const Comparison& c, std::string_view unit) {
     const bool fails = c.noise_known && r.p_family_wise < kAdequate;
     out += fmt::format(
         "<tr{}><td>{}</td><td "
-        "class=\"text\">{}</td><td>{}</td><td>{:.4g}</td><td>{:.4g}</td><td>{:.3g}</td><td>{:.3g}</"
+        "class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</"
         "td><td>{}</td>"
         "<td>{}</td></tr>\n",
-        fails ? " class=\"fails\"" : "", i + 1, escaped(place_of(r)), r.rows, r.observed,
-        r.observed - r.residual, r.residual, r.offset,
+        fails ? " class=\"fails\"" : "", i + 1, escaped(place_of(r)), r.rows,
+        config::significant(r.observed, 4), config::significant(r.observed - r.residual, 4),
+        number_text(r.residual), number_text(r.offset),
         c.noise_known ? fmt::format("{:.1f}", r.z) : "",
         c.noise_known ? fmt::format("{:.2g}", r.p_family_wise) : "");
   }

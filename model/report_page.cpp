@@ -151,7 +151,7 @@ std::string with_unit(std::string_view unit) {
 }
 
 std::string number_text(double value, std::string_view otherwise) {
-  return std::isfinite(value) ? fmt::format("{:.3g}", value) : std::string(otherwise);
+  return std::isfinite(value) ? config::significant(value, 3) : std::string(otherwise);
 }
 
 std::string estimates_table(const std::vector<Estimate>& estimates,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/rounding.hpp"
 #include "model/diagnose/verdict_text.hpp"
 #include "model/effect.hpp"
 #include "model/report_page.hpp"
@@ -90,16 +91,16 @@ std::string ranking_section(const Diagnosis& d) {
     const Found& found = missing.found;
     const std::string id = escaped(found.effect);
     out += fmt::format(
-        "<tr class=\"added\"><td>{}</td><td class=\"text\">{}</td><td>{}</td><td>{:.3g} %</td>"
+        "<tr class=\"added\"><td>{}</td><td class=\"text\">{}</td><td>{}</td><td>{} %</td>"
         "<td class=\"bars\">{}</td></tr>\n",
-        id, formula_of(found.effect), p_text(found.p_value), 100.0 * found.probability,
-        bar("fitted", found.probability));
+        id, formula_of(found.effect), p_text(found.p_value),
+        config::significant(100.0 * found.probability, 2), bar("fitted", found.probability));
     for (const Rival& rival : found.rivals) {
       out += fmt::format(
-          "<tr><td>or {}</td><td class=\"text\">{}</td><td></td><td>{:.3g} %</td>"
+          "<tr><td>or {}</td><td class=\"text\">{}</td><td></td><td>{} %</td>"
           "<td class=\"bars\">{}</td></tr>\n",
-          escaped(rival.effect), formula_of(rival.effect), 100.0 * rival.probability,
-          bar("heldout", rival.probability));
+          escaped(rival.effect), formula_of(rival.effect),
+          config::significant(100.0 * rival.probability, 2), bar("heldout", rival.probability));
     }
     if (found.inner_at_edge) {
       notes += fmt::format(

@@ -13,20 +13,24 @@
 namespace fogbench::model {
 namespace {
 
-std::string joined(const std::vector<std::string>& items, std::string_view between = ", ") {
+std::string listed(const std::vector<std::string>& items, std::string_view between = ", ") {
   return fmt::format("{}", fmt::join(items, between));
+}
+
+std::string number(double value) {
+  return config::significant(value, 3);
 }
 
 std::string names_found(const Diagnosis& d) {
   std::vector<std::string> names;
   for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
-  return joined(names);
+  return listed(names);
 }
 
 /// "0.012 +- 0.001 deg/h"; without an uncertainty where it is not known.
 std::string value_text(const Estimate& e) {
   const double uncertainty = e.coverage_factor * e.standard_error;
-  if (!std::isfinite(uncertainty)) return fmt::format("{:.3g} {}", e.value, e.unit);
+  if (!std::isfinite(uncertainty)) return fmt::format("{} {}", number(e.value), e.unit);
   const config::Rounded r = config::rounded(e.value, uncertainty);
   return fmt::format("{} +- {} {}", r.value, r.uncertainty, e.unit);
 }
@@ -37,7 +41,7 @@ std::string loop_text(const LoopFigures& loop) {
   for (const Estimate* e : {&loop.remanence, &loop.coercive}) {
     parts.push_back(e->name + " " + (std::isfinite(e->value) ? value_text(*e) : "not determined"));
   }
-  return joined(parts);
+  return listed(parts);
 }
 
 /// Whether the effect is in the model in another form, whose coefficients say nothing to people.
@@ -57,13 +61,13 @@ std::string estimates_text(const MissingEffect& m) {
     if (std::isnan(e.value)) {
       parts.push_back(fmt::format("{} not determined", name));
     } else if (m.inner_open && e.inner) {
-      parts.push_back(
-          fmt::format("{} = {:.3g} {}, which these data do not determine", name, e.value, e.unit));
+      parts.push_back(fmt::format("{} = {} {}, which these data do not determine", name,
+                                  number(e.value), e.unit));
     } else {
       parts.push_back(fmt::format("{} = {}", name, value_text(e)));
     }
   }
-  return parts.empty() ? m.found.effect : joined(parts);
+  return parts.empty() ? m.found.effect : listed(parts);
 }
 
 /// The set that the effect leads; null: no other effect does as well.
@@ -77,13 +81,13 @@ std::string missing_sentence(const Diagnosis& d) {
   std::vector<std::string> parts;
   for (const MissingEffect& m : d.missing) {
     const auto* set = set_of(d, m.found.effect);
-    parts.push_back(set ? "one of " + joined(*set) : estimates_text(m));
+    parts.push_back(set ? "one of " + listed(*set) : estimates_text(m));
   }
   // A slow effect or the noise, and none of them has been fitted.
   for (const auto& set : d.ambiguous) {
-    if (d.missing.empty()) parts.push_back("one of " + joined(set));
+    if (d.missing.empty()) parts.push_back("one of " + listed(set));
   }
-  return fmt::format("Missing: {}{}.", joined(parts, "; "),
+  return fmt::format("Missing: {}{}.", listed(parts, "; "),
                      d.ambiguous.empty() ? "" : "; these data cannot say which");
 }
 
@@ -98,7 +102,7 @@ std::string unexplained_sentence(const Diagnosis& d) {
   const std::string on =
       d.unexplained.depends_on.empty()
           ? std::string()
-          : fmt::format("; what is left depends on {}", joined(d.unexplained.depends_on));
+          : fmt::format("; what is left depends on {}", listed(d.unexplained.depends_on));
   if (formula_leads(d)) {
     return fmt::format(
         "Something is missing that the catalogue does not hold: {} does better than {}.",
@@ -140,8 +144,8 @@ std::string beside_noise(const Diagnosis& d) {
       d.verdict == Verdict::kUnexplained || (d.verdict == Verdict::kAmbiguous && d.missing.empty());
   const double floor = unsure ? d.floor.white : d.noise_floor;
   if (!std::isfinite(floor)) return "";
-  return fmt::format(", where {} leaves {:.3g}", unsure ? "white noise alone" : "noise alone",
-                     floor);
+  return fmt::format(", where {} leaves {}", unsure ? "white noise alone" : "noise alone",
+                     number(floor));
 }
 
 std::string evidence_sentence(const Diagnosis& d) {
@@ -156,20 +160,20 @@ std::string evidence_sentence(const Diagnosis& d) {
   std::string text;
   if (formula_leads(d)) {
     text = fmt::format(
-        "On rows held out of the fit the formula leaves {:.3g} {} RMS, the {} effects {:.3g}, the "
-        "model as it came {:.3g}",
-        d.unexplained.heldout_rms, unit, d.missing.size(), d.missing.back().heldout_rms_after,
-        d.heldout_rms);
+        "On rows held out of the fit the formula leaves {} {} RMS, what is nearest in the "
+        "catalogue {}, the model as it came {}",
+        number(d.unexplained.heldout_rms), unit, number(d.missing.back().heldout_rms_after),
+        number(d.heldout_rms));
   } else if (d.missing.empty() || !ladder) {
-    text = fmt::format("The model leaves {:.3g} {} RMS", rms, unit);
-    if (std::isfinite(d.heldout_rms)) text += held_out(fmt::format("{:.3g}", d.heldout_rms));
+    text = fmt::format("The model leaves {} {} RMS", number(rms), unit);
+    if (std::isfinite(d.heldout_rms)) text += held_out(number(d.heldout_rms));
   } else {
-    text = fmt::format("With {} the RMS residual falls from {:.3g} to {:.3g} {}",
-                       d.missing.size() > 1 ? "them" : d.missing.front().found.effect, rms,
-                       d.ladder.back().rms, unit);
+    text = fmt::format("With {} the RMS residual falls from {} to {} {}",
+                       d.missing.size() > 1 ? "them" : d.missing.front().found.effect, number(rms),
+                       number(d.ladder.back().rms), unit);
     if (std::isfinite(d.heldout_rms) && std::isfinite(d.ladder.back().heldout_rms)) {
       text += held_out(
-          fmt::format("from {:.3g} to {:.3g}", d.heldout_rms, d.ladder.back().heldout_rms));
+          fmt::format("from {} to {}", number(d.heldout_rms), number(d.ladder.back().heldout_rms)));
     }
   }
   text += fmt::format("{}; chance that noise alone looks so: {}.", beside_noise(d),
@@ -196,12 +200,11 @@ std::string few_rows_to_do(const Diagnosis& d) {
 
 std::string to_do_sentence(const Diagnosis& d, const std::string& next_command) {
   if (!d.judged && d.missing.empty()) return few_rows_to_do(d);
-  if (!d.unexplained.suggestion.empty() && d.verdict == Verdict::kUnexplained) {
-    const bool beside = d.unexplained.beside_found && !d.missing.empty();
+  // Beside effects that were found it mends what they leave, and those come first.
+  if (!d.unexplained.suggestion.empty() && !d.unexplained.beside_found) {
     return fmt::format(
-        R"(Try: {{"effect": "new", "expression": "{}"}} as a term of the model{}; a guess, held-out RMS {:.3g}.)",
-        d.unexplained.suggestion, beside ? " beside " + names_found(d) : std::string(),
-        d.unexplained.heldout_rms);
+        R"(Try: {{"effect": "new", "expression": "{}"}} as a term of the model, a guess; held-out RMS {}.)",
+        d.unexplained.suggestion, number(d.unexplained.heldout_rms));
   }
   if (const NextMeasurement* next = proposed_measurement(d)) {
     return fmt::format("Measure: {}.", next->action);
@@ -227,7 +230,7 @@ std::string effect_sentence(const Diagnosis& d, const MissingEffect& m) {
                         vote.better, vote.folds);
   }
   if (!m.found.more.empty() && !in_another_form(m)) {
-    line += "; one value of its inner parameter does not suffice, its shape bends";
+    line += "; more than one value of its inner parameter is at work";
   }
   if (!m.found.rivals.empty()) {
     std::vector<std::string> rivals;
@@ -235,7 +238,7 @@ std::string effect_sentence(const Diagnosis& d, const MissingEffect& m) {
       rivals.push_back(fmt::format("{} ({:.0f} %)", r.effect, 100.0 * r.probability));
     }
     line += fmt::format("; probability {:.0f} %, or else {}", 100.0 * m.found.probability,
-                        joined(rivals));
+                        listed(rivals));
   }
   if (!m.found.or_shape.empty()) {
     line += fmt::format("; or another effect of this shape ({})", m.found.or_shape);
@@ -320,7 +323,12 @@ VerdictWords verdict_in_words(const Diagnosis& d, const std::string& next_comman
     if (!d.unexplained.shape.empty()) {
       more.push_back(fmt::format("What is left resembles {}.", d.unexplained.shape));
     }
-    if (d.unexplained.suggestion.empty()) {
+    if (d.unexplained.beside_found) {
+      more.push_back(fmt::format(
+          "A formula to start from (a guess, as the expression of a term beside {}): {}; held-out "
+          "RMS {}.",
+          names_found(d), d.unexplained.suggestion, number(d.unexplained.heldout_rms)));
+    } else if (d.unexplained.suggestion.empty()) {
       more.emplace_back("No short formula of the recorded columns predicts held-out rows better.");
     }
   }

@@ -46,5 +46,17 @@ TEST(Rounding, GivesSixDigitsWithoutAnUncertainty) {
   EXPECT_EQ(both(kNaN, 0.1), "- +- 0.1");
 }
 
+TEST(Rounding, HasNoPowerOfTenInNumbersOfFourToSevenDigits) {
+  EXPECT_EQ(significant(1069.7, 3), "1070");
+  EXPECT_EQ(significant(999.7, 3), "1000");
+  EXPECT_EQ(significant(-14523.0, 4), "-14520");
+  EXPECT_EQ(significant(0.00828, 3), "0.00828");
+  EXPECT_EQ(significant(46.42, 3), "46.4");
+  EXPECT_EQ(significant(3.8e-5, 2), "3.8e-05");
+  EXPECT_EQ(significant(2.0e12, 3), "2e+12");
+  EXPECT_EQ(significant(0.0, 3), "0");
+  EXPECT_EQ(significant(kNaN, 3), "-");
+}
+
 }  // namespace
 }  // namespace fogbench::config
