@@ -1,12 +1,20 @@
-// How often `p_adequate` falls below 5 % where the model is right: white noise without times, and
-// coloured noise of each grade on loops of a sweep. Measured with 200 seeds each, in per cent:
-//   white 7.0, navigation 8.5, tactical 6.5, random walk 5.0; together 6.8 +- 0.9
-// A little above the nominal 5; the bound below is what 200 seeds of such a rate may show.
-
+// How often compare raises an alarm, at its 5 %, where the model is right: on loops of a sweep, 4 h
+// and 11 h long. Measured on 60 to 120 seeds each, alarms of tables:
+//                              4 h       11 h
+//   white, neither times nor errors stated
+//                              4 of 100
+//   white                      1 of 60   0 of 60
+//   flicker, B/N = 10          3 of 60   5 of 94
+//   walk, K/N = 10             5 of 120  5 of 120
+//   tactical                   4 of 60
+//   drawn from the prior       4 of 60   2 of 60
+// Together 33 of 794, 4.2 % (2.9 to 5.8 with 95 %); of the ranges by themselves 4 %. White noise
+// alone is below that: a few hundred rows cannot rule out slow noise, and are not held to it.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <iostream>
+#include <utility>
 
 #include "model/compare.hpp"
 #include "tests/model/models.hpp"
@@ -15,7 +23,6 @@
 namespace fogbench::model {
 namespace {
 
-constexpr int kAlarmSeeds = 200;
 constexpr double kMostPercent = 9.0;
 
 /// The loops without their times and standard errors.
@@ -29,34 +36,63 @@ Table untimed(const Table& loops) {
   return table;
 }
 
-double alarms_percent(const NoiseCoefficients& noise, bool timed) {
+/// Of tables of 4 h and of 11 h.
+void expect_rare_alarms(const NoiseOfSeed& noise_of, bool timed) {
   const auto model = model_of_effects({"bias", "magnetic_linear_z"});
-  int alarms = 0;
-  for (unsigned seed = 1; seed <= kAlarmSeeds; ++seed) {
-    const Table loops = noisy_loops(noise, seed, 3, 0.0);
-    const auto result = compare(timed ? loops : untimed(loops), model, {}, seed);
-    if (!result) return 100.0;
-    alarms += result->p_adequate < 0.05;
+  int tables = 0, all = 0, of_ranges = 0;
+  for (const auto& [loops, seeds] : {std::pair{3, 200u}, {8, 100u}}) {
+    for (unsigned seed = 1; seed <= seeds; ++seed, ++tables) {
+      const Table table = noisy_loops(noise_of(seed), seed, loops, 0.0);
+      const auto result = compare(timed ? table : untimed(table), model, {}, seed);
+      ASSERT_TRUE(result) << result.error().message;
+      all += result->p_adequate < kAdequate;
+      of_ranges += result->regions.front().p_family_wise < kAdequate;
+    }
+    std::cout << "up to " << loops << " loops, " << tables << " tables: " << all
+              << " alarms; of the ranges by themselves " << of_ranges << '\n';
   }
-  const double percent = 100.0 * alarms / kAlarmSeeds;
-  std::cout << "false alarms " << percent << " %\n";
-  return percent;
+  EXPECT_LE(100.0 * all / tables, kMostPercent);
+  EXPECT_LE(100.0 * of_ranges / tables, kMostPercent);
 }
 
 TEST(CompareFalseAlarms, AreRareUnderWhiteNoise) {
-  EXPECT_LE(alarms_percent({0.005, 0.0, 0.0, 0.0}, false), kMostPercent);
+  expect_rare_alarms(always({0.005, 0.0, 0.0, 0.0}), false);
+}
+
+TEST(CompareFalseAlarms, AreRareUnderWhiteNoiseThatIsStated) {
+  expect_rare_alarms(always({0.005, 0.0, 0.0, 0.0}), true);
+}
+
+TEST(CompareFalseAlarms, AreRareUnderFlicker) {
+  expect_rare_alarms(always({0.001, 0.01, 0.0, 0.0}), true);
 }
 
 TEST(CompareFalseAlarms, AreRareUnderNavigationNoise) {
-  EXPECT_LE(alarms_percent(kNavigation, true), kMostPercent);
+  expect_rare_alarms(always(kNavigation), true);
 }
 
 TEST(CompareFalseAlarms, AreRareUnderTacticalNoise) {
-  EXPECT_LE(alarms_percent(kTactical, true), kMostPercent);
+  expect_rare_alarms(always(kTactical), true);
 }
 
 TEST(CompareFalseAlarms, AreRareUnderARandomWalk) {
-  EXPECT_LE(alarms_percent({0.001, 0.0, 0.01, 0.0}, true), kMostPercent);
+  expect_rare_alarms(always({0.001, 0.0, 0.01, 0.0}), true);
+}
+
+TEST(CompareFalseAlarms, AreRareUnderTheNoiseOfInstrumentsAsThePriorHasThem) {
+  expect_rare_alarms([](unsigned seed) { return drawn_instrument(0.001, seed); }, true);
+}
+
+// A walk of K/N = 100 per h is that of no gyro: a diagnosis leaves open whether it is an effect.
+TEST(Compare, NeverCallsNoiseAWalkThatADiagnosisDoubts) {
+  const Table loops = noisy_loops({0.001, 0.0, 0.1, 0.0}, 1, 3, 0.0);
+  const auto model = model_of_effects({"bias", "magnetic_linear_z"});
+  const auto diagnosis = diagnose(loops, model, {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error().message;
+  ASSERT_EQ(diagnosis->verdict, Verdict::kAmbiguous) << diagnosis->sentences.front();
+  const auto result = compare(loops, model, {});
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_LT(result->p_adequate, kAdequate);
 }
 
 // Effects with a memory, or that act for a while, move the mean of no range.

@@ -47,20 +47,21 @@ Regression thermal_design(int rows) {
 }
 
 /// Share of intervals that hold the truth, in per cent, over all coefficients but the bias (which
-/// no interval can hold: the flicker below the record's frequencies is part of it).
-double coverage(Regression design, const NoiseCoefficients& noise, bool anchored, double step_s) {
+/// no interval can hold: the flicker below the record's frequencies is part of it). The white part
+/// of the noise is the same for every seed.
+double coverage(Regression design, const NoiseOfSeed& noise_of, bool anchored, double step_s) {
   const Windows& w = design.windows;
   const double period = w.centre_s[1] - w.centre_s[0];
   const int steps = static_cast<int>(w.duration_s[0] / step_s);
   const int gap = static_cast<int>((period - w.duration_s[0]) / step_s);
   if (anchored) {
-    design.windows.white_floor.setConstant(noise.angle_random_walk_deg_per_sqrt_h /
+    design.windows.white_floor.setConstant(noise_of(1).angle_random_walk_deg_per_sqrt_h /
                                            std::sqrt(w.duration_s[0] / 3600.0));
   }
   const auto shapes = NoiseShapes::make(design.windows);
   int held = 0, all = 0;
   for (unsigned seed = 1; seed <= kCoverageSeeds; ++seed) {
-    NoiseGenerator generator(noise, step_s, period * static_cast<double>(w.rows()), seed);
+    NoiseGenerator generator(noise_of(seed), step_s, period * static_cast<double>(w.rows()), seed);
     VectorXd y(w.rows());
     for (double& value : y) {
       value = generator.mean_of(steps);
@@ -78,48 +79,47 @@ double coverage(Regression design, const NoiseCoefficients& noise, bool anchored
   return percent;
 }
 
-constexpr NoiseCoefficients kWhite{0.005, 0.0, 0.0, 0.0};
-constexpr NoiseCoefficients kWalk{0.001, 0.0, 0.01, 0.0};
-constexpr NoiseCoefficients kFlicker{0.001, 0.02, 0.0, 0.0};
-
 struct CoverageCase {
   const char* name;
-  NoiseCoefficients noise;
-  double least_percent, most_percent;
+  NoiseOfSeed noise_of;
+  double least_percent, most_percent;  ///< of temperature steps
+  double most_of_sweeps;
 };
 
 // Measured with 500 seeds, anchored and free, in per cent:
 //   rows         75 (loops)    18            40            100
+//   instruments  95.8, 96.3    96.0, 95.3    95.0, 95.4    95.4, 95.6
 //   navigation   93.7, 95.7    97.5, 96.2    96.6, 97.7    92.7, 94.4
-//   tactical     93.4, 95.6    96.3, 95.3    95.7, 96.8    92.7, 94.3
+//   tactical     93.5, 95.6    96.3, 95.3    95.7, 96.8    92.8, 94.3
 //   white        97.9, 97.4    98.7, 96.7    98.9, 98.6    98.4, 98.1
-//   walk         93.1, 95.3    96.6, 95.1    89.5, 91.9    87.7, 89.3
-//   flicker      94.3, 95.2    94.1, 94.1    94.5, 95.3    95.4, 95.7
-// Few rows cannot rule out slow noise, so where there is little of it the intervals are too wide;
-// where there is nothing else, too narrow: this walk has K/N = 10 per h, thirty times what such
-// instruments show in the middle, and the prior takes a part of it for an effect.
-const CoverageCase kCoverageCases[] = {{"Navigation", kNavigation, 92.0, 99.3},
-                                       {"Tactical", kTactical, 92.0, 99.3},
-                                       {"White", kWhite, 95.0, 99.9},
-                                       {"Walk", kWalk, 87.0, 99.3},
-                                       {"Flicker", kFlicker, 93.5, 99.3}};
+//   walk         93.5, 95.5    96.6, 95.1    89.5, 91.9    88.1, 89.5
+//   flicker      94.4, 95.2    94.1, 94.1    94.5, 95.3    95.5, 95.7
+// Over instruments as the prior has them, the intervals hold what they promise. Of a single one
+// they need not: few rows cannot rule out slow noise, so where there is little of it the intervals
+// are too wide; where there is nothing else, too narrow: this walk has K/N = 10 per h, thirty times
+// what is usual, and the prior takes a part of it for an effect.
+const CoverageCase kCoverageCases[] = {
+    {"Instruments", [](unsigned seed) { return drawn_instrument(0.002, seed); }, 93.8, 97.1, 97.2},
+    {"Navigation", always(kNavigation), 92.0, 99.3, 97.2},
+    {"Tactical", always(kTactical), 92.0, 99.3, 97.2},
+    {"White", always({0.005, 0.0, 0.0, 0.0}), 95.0, 99.9, 99.0},
+    {"Walk", always({0.001, 0.0, 0.01, 0.0}), 87.0, 99.3, 99.0},
+    {"Flicker", always({0.001, 0.02, 0.0, 0.0}), 93.5, 99.3, 99.0}};
 
 class GlsCoverage : public testing::TestWithParam<CoverageCase> {};
 
 TEST_P(GlsCoverage, OfSweepsHoldsWhatTheIntervalsPromise) {
-  const bool graded = GetParam().noise.rate_random_walk_deg_per_h_per_sqrt_h > 0.0 &&
-                      GetParam().noise.bias_instability_deg_per_h > 0.0;
   for (bool anchored : {true, false}) {
-    const double percent = coverage(magnetic_design(), GetParam().noise, anchored, 20.0);
+    const double percent = coverage(magnetic_design(), GetParam().noise_of, anchored, 20.0);
     EXPECT_GE(percent, 93.0);
-    EXPECT_LE(percent, graded ? 97.2 : 99.0);
+    EXPECT_LE(percent, GetParam().most_of_sweeps);
   }
 }
 
 TEST_P(GlsCoverage, OfTemperatureStepsHoldsWhatTheIntervalsPromise) {
   for (int rows : {18, 40, 100}) {
     for (bool anchored : {true, false}) {
-      const double percent = coverage(thermal_design(rows), GetParam().noise, anchored, 20.0);
+      const double percent = coverage(thermal_design(rows), GetParam().noise_of, anchored, 20.0);
       EXPECT_GE(percent, GetParam().least_percent) << rows;
       EXPECT_LE(percent, GetParam().most_percent) << rows;
     }

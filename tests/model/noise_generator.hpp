@@ -3,11 +3,13 @@
 // constant step, from which the tests make their averaging windows by adding up.
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <vector>
 
 #include "model/noise.hpp"
+#include "model/noise_prior.hpp"
 
 namespace fogbench::model {
 
@@ -83,6 +85,31 @@ class NoiseGenerator {
 
 inline constexpr NoiseCoefficients kNavigation{0.001, 0.003, 0.003, 0.0};
 inline constexpr NoiseCoefficients kTactical{0.005, 0.02, 0.02, 0.0};
+
+/// The noise of an instrument whose ratios B/N and K/N are drawn from the prior itself.
+inline NoiseCoefficients drawn_instrument(double angle_random_walk_deg_per_sqrt_h, unsigned seed) {
+  std::mt19937_64 random(1'000'000 + seed);  // apart from the noise's own
+  std::uniform_real_distribution<double> uniform;
+  const auto drawn = [&](const NoisePrior::Ratio& prior) {
+    const double below = std::log(uniform(random)) + prior.log_below(prior.most());
+    double low = -8.0, high = std::log10(prior.most());
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (prior.log_below(std::pow(10.0, middle)) < below ? low : high) = middle;
+    }
+    return std::pow(10.0, low);
+  };
+  const NoisePrior prior;
+  const double n = angle_random_walk_deg_per_sqrt_h;
+  const double b = n * drawn(prior.b_over_n);
+  return {n, b, n * drawn(prior.k_over_n), 0.0};
+}
+
+using NoiseOfSeed = std::function<NoiseCoefficients(unsigned seed)>;
+
+inline NoiseOfSeed always(const NoiseCoefficients& noise) {
+  return [noise](unsigned) { return noise; };
+}
 
 /// `rows` windows of `duration_s` every `period_s`, in one run.
 inline Windows regular_windows(int rows, double duration_s, double period_s) {
