@@ -5,7 +5,9 @@
 // 200 seeds, each a whole dry run on the virtual clock (gyro at 10 Hz, which the averages do not
 // notice: the noise is exact at any rate). The share of coefficients within k = 2 standard errors
 // must lie in 93 ... 97 %; with 200 seeds and several coefficients each, the share itself has a
-// standard error of about 1 %. No coefficient may be off on average.
+// standard error of about 1 %. No coefficient may be off on average. Measured on 60 gyros: thermal
+// 96.1 %, temperature_linear 96.7 %. Of tactical gyros alone, whose walk is twelve times the usual
+// (K/N = 4 per h), 91.7 %.
 
 #include <gtest/gtest.h>
 
@@ -20,6 +22,7 @@
 #include "daemon/session.hpp"
 #include "daemon/simulated_operator.hpp"
 #include "model/fit.hpp"
+#include "tests/model/noise_generator.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -30,14 +33,16 @@ constexpr int kSeeds = 200;
 constexpr double kLeastShare = 0.93, kMostShare = 0.97;
 constexpr double kMostOff = 0.35;  // five times 1/sqrt(200)
 
-/// Points of one dry run as a measurement table.
+/// Points of one dry run as a measurement table; the gyro has the white noise of the grade, and
+/// slow noise as the prior of the fit has it: over such gyros its intervals are to hold.
 model::Table measure(const std::string& procedure, const daemon::Parameters& parameters,
                      const std::string& noise, std::uint64_t seed) {
   auto setup = daemon::load_setup({.bench = "simulated", .scenario = "device-1"});
   EXPECT_TRUE(setup) << setup.error().message;
   setup->bench.gyro.device.frame_rate_hz = 10.0;
   setup->bench.gyro.max_gap = config::Seconds{1.0};
-  setup->scenario.noise = *config::noise_grade(noise);
+  setup->scenario.noise = model::drawn_instrument(
+      config::noise_grade(noise)->angle_random_walk_deg_per_sqrt_h, static_cast<unsigned>(seed));
   const auto plan = daemon::plan_procedure(procedure, setup->bench, parameters);
   EXPECT_TRUE(plan) << plan.error().message;
   const support::TemporaryFolder folder;
