@@ -13,7 +13,7 @@
 namespace fogbench::model {
 namespace {
 
-std::string listed(const std::vector<std::string>& items, std::string_view between = ", ") {
+std::string enumerated(const std::vector<std::string>& items, std::string_view between = ", ") {
   return fmt::format("{}", fmt::join(items, between));
 }
 
@@ -24,7 +24,7 @@ std::string number(double value) {
 std::string names_found(const Diagnosis& d) {
   std::vector<std::string> names;
   for (const MissingEffect& m : d.missing) names.push_back(m.found.effect);
-  return listed(names);
+  return enumerated(names);
 }
 
 /// "0.012 +- 0.001 deg/h"; without an uncertainty where it is not known.
@@ -35,13 +35,14 @@ std::string value_text(const Estimate& e) {
   return fmt::format("{} +- {} {}", r.value, r.uncertainty, e.unit);
 }
 
-/// "remanence 0.012 +- 0.001 deg/h, coercive field 31 +- 2 uT".
+/// "remanence = 0.012 +- 0.001 deg/h, coercive field = 31 +- 2 uT".
 std::string loop_text(const LoopFigures& loop) {
   std::vector<std::string> parts;
   for (const Estimate* e : {&loop.remanence, &loop.coercive}) {
-    parts.push_back(e->name + " " + (std::isfinite(e->value) ? value_text(*e) : "not determined"));
+    parts.push_back(e->name + " = " +
+                    (std::isfinite(e->value) ? value_text(*e) : "not determined"));
   }
-  return listed(parts);
+  return enumerated(parts);
 }
 
 /// Whether the effect is in the model in another form, whose coefficients say nothing to people.
@@ -67,7 +68,7 @@ std::string estimates_text(const MissingEffect& m) {
       parts.push_back(fmt::format("{} = {}", name, value_text(e)));
     }
   }
-  return parts.empty() ? m.found.effect : listed(parts);
+  return parts.empty() ? m.found.effect : enumerated(parts);
 }
 
 /// The set that the effect leads; null: no other effect does as well.
@@ -81,13 +82,13 @@ std::string missing_sentence(const Diagnosis& d) {
   std::vector<std::string> parts;
   for (const MissingEffect& m : d.missing) {
     const auto* set = set_of(d, m.found.effect);
-    parts.push_back(set ? "one of " + listed(*set) : estimates_text(m));
+    parts.push_back(set ? "one of " + enumerated(*set) : estimates_text(m));
   }
   // A slow effect or the noise, and none of them has been fitted.
   for (const auto& set : d.ambiguous) {
-    if (d.missing.empty()) parts.push_back("one of " + listed(set));
+    if (d.missing.empty()) parts.push_back("one of " + enumerated(set));
   }
-  return fmt::format("Missing: {}{}.", listed(parts, "; "),
+  return fmt::format("Missing: {}{}.", enumerated(parts, "; "),
                      d.ambiguous.empty() ? "" : "; these data cannot say which");
 }
 
@@ -102,7 +103,7 @@ std::string unexplained_sentence(const Diagnosis& d) {
   const std::string on =
       d.unexplained.depends_on.empty()
           ? std::string()
-          : fmt::format("; what is left depends on {}", listed(d.unexplained.depends_on));
+          : fmt::format("; what is left depends on {}", enumerated(d.unexplained.depends_on));
   if (formula_leads(d)) {
     return fmt::format(
         "Something is missing that the catalogue does not hold: {} does better than {}.",
@@ -238,7 +239,7 @@ std::string effect_sentence(const Diagnosis& d, const MissingEffect& m) {
       rivals.push_back(fmt::format("{} ({:.0f} %)", r.effect, 100.0 * r.probability));
     }
     line += fmt::format("; probability {:.0f} %, or else {}", 100.0 * m.found.probability,
-                        listed(rivals));
+                        enumerated(rivals));
   }
   if (!m.found.or_shape.empty()) {
     line += fmt::format("; or another effect of this shape ({})", m.found.or_shape);

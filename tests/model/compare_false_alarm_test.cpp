@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "model/compare.hpp"
+#include "model/diagnose/verdict_text.hpp"
 #include "tests/model/models.hpp"
 #include "tests/support/diagnosis_trial.hpp"
 
@@ -91,7 +92,7 @@ TEST(Compare, NeverCallsNoiseAWalkThatADiagnosisDoubts) {
   const auto model = model_of_effects({"bias", "magnetic_linear_z"});
   const auto diagnosis = diagnose(loops, model, {});
   ASSERT_TRUE(diagnosis) << diagnosis.error().message;
-  ASSERT_EQ(diagnosis->verdict, Verdict::kAmbiguous) << diagnosis->sentences.front();
+  ASSERT_EQ(diagnosis->verdict, Verdict::kAmbiguous) << verdict_in_words(*diagnosis, "").verdict;
   const auto result = compare(loops, model, {});
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_LT(result->p_adequate, kAdequate);

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "model/diagnose/diagnose.hpp"
+#include "model/diagnose/verdict_text.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {
@@ -113,13 +114,13 @@ Diagnosis diagnosed_field(const std::vector<double>& field, const std::vector<do
 
 /// One loop and nothing else, down to the noise.
 void expect_a_loop(const Diagnosis& d, const std::string& effect, const std::string& form) {
-  const std::string& says = d.sentences.front();
+  const std::string says = verdict_in_words(d, "").verdict;
   EXPECT_EQ(d.verdict, Verdict::kMissingEffect) << says;
   ASSERT_EQ(d.missing.size(), 1U) << says;
   EXPECT_EQ(d.missing[0].found.effect, effect);
   EXPECT_THAT(d.missing[0].terms.front(), StartsWith(form));
   EXPECT_LT(d.ladder.back().heldout_rms, kNearTheFloor * d.noise_floor);
-  EXPECT_THAT(d.sentences[1], HasSubstr("a loop of remanence = "));
+  EXPECT_THAT(says, HasSubstr("a loop of remanence = "));
 }
 
 TEST(RealLoops, AMajorLoopWithMinorOnesIsOneEffectDownToTheNoise) {
@@ -148,8 +149,8 @@ TEST(RealLoops, ASparseMajorLoopIsNamedAlone) {
   const std::vector<double> field = driven(kMajorLoop, 50.0);
   const std::vector<double> m = magnetised({60, 0.5, 80}, field);
   const Diagnosis d = diagnosed_field(field, times(0.015, m), 0.0005, 11);
-  ASSERT_FALSE(d.missing.empty()) << d.sentences.front();
-  EXPECT_EQ(d.missing[0].found.effect, "magnetic_hysteresis_z") << d.sentences.front();
+  ASSERT_FALSE(d.missing.empty()) << verdict_in_words(d, "").verdict;
+  EXPECT_EQ(d.missing[0].found.effect, "magnetic_hysteresis_z") << verdict_in_words(d, "").verdict;
 }
 
 TEST(RealLoops, OneOfTheTemperatureToo) {
@@ -177,8 +178,8 @@ TEST(RealLoops, ASinglePlayKeepsItsOneWidth) {
   double state = 0.0;
   for (const double h : field) play.push_back(state = std::clamp(state, h - 60.0, h + 60.0));
   const Diagnosis d = diagnosed_field(field, times(2e-4, play), 0.0005, 31);
-  EXPECT_EQ(d.verdict, Verdict::kMissingEffect) << d.sentences.front();
-  ASSERT_EQ(d.missing.size(), 1U) << d.sentences.front();
+  EXPECT_EQ(d.verdict, Verdict::kMissingEffect) << verdict_in_words(d, "").verdict;
+  ASSERT_EQ(d.missing.size(), 1U) << verdict_in_words(d, "").verdict;
   EXPECT_EQ(d.missing[0].terms.front(), "magnetic_hysteresis_z");
   ASSERT_EQ(d.missing[0].estimates.size(), 2U);
   const Estimate& width = d.missing[0].estimates[1];
@@ -193,11 +194,11 @@ TEST(RealLoops, NoiseAndASaturationAloneAreNone) {
   const std::vector<double> field = driven(kSpiral, 25.0);
   const Diagnosis nothing =
       diagnosed_field(field, std::vector<double>(field.size(), 0.0), 0.0005, 41);
-  EXPECT_EQ(nothing.verdict, Verdict::kNothingMissing) << nothing.sentences.front();
+  EXPECT_EQ(nothing.verdict, Verdict::kNothingMissing) << verdict_in_words(nothing, "").verdict;
   std::vector<double> saturation;
   for (const double h : field) saturation.push_back(0.02 * std::tanh(h / 120.0));
   const Diagnosis bent = diagnosed_field(field, saturation, 0.0005, 42);
-  ASSERT_EQ(bent.missing.size(), 1U) << bent.sentences.front();
+  ASSERT_EQ(bent.missing.size(), 1U) << verdict_in_words(bent, "").verdict;
   EXPECT_EQ(bent.missing[0].terms.front(), "magnetic_saturation_z");
 }
 
