@@ -12,8 +12,8 @@ constexpr int kFinest = 1 << kMostHalvings;
 // Down to steps of 2.4 standard deviations a sum over a normal posterior is right to a few per
 // cent. There, the log weight falls by this much from its top to the next shape.
 constexpr double kResolved = 3.0;
-// exp(-6) of the best: shapes around which nothing is worth a closer look.
-constexpr double kReach = 6.0;
+// exp(-4) of the best: shapes around which nothing is worth a closer look.
+constexpr double kReach = 4.0;
 
 double value_at(const RatioAxis& axis, int place) {
   return place < 0 ? 0.0 : axis.least * std::exp(axis.step * place / kFinest);

@@ -2,6 +2,8 @@
 
 #include <Eigen/Dense>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "model/diagnose/detector_view.hpp"
 #include "model/shape_grid.hpp"
@@ -21,7 +23,7 @@ constexpr double kLeastLeft = 1e-3;
 constexpr double kLeastShape = 1e-3;
 // What a point of a grid between those of the sample may gain, as a log-likelihood.
 constexpr double kUnsampled = 5.0;
-constexpr std::size_t kMostShapes = 32;
+constexpr std::size_t kMostShapes = 12;
 constexpr double kMinusInfinity = -std::numeric_limits<double>::infinity();
 
 std::size_t count_blocks(const Library& library) {
@@ -65,24 +67,48 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
   std::vector<std::shared_ptr<View>> all;
   std::vector<double> null_likelihood, best_likelihood;
 
-  // The best of the candidates' blocks, made orthonormal in place.
+  // What the best of some blocks explains, and which it is; made orthonormal in place.
   const auto explained = [](const View& view, MatrixXd& z, const VectorXd& lengths,
                             const std::vector<Block>& of, std::vector<bool>* living) {
-    double most = 0.0;
-    for (const Block& b : of) {
+    std::pair<double, std::size_t> most{0.0, 0};
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      const Block& b = of[i];
       auto part = z.middleCols(b.first, b.width);
       const bool alive = orthonormalise(part, lengths.segment(b.first, b.width));
       if (!alive) part.setZero();
       if (living != nullptr) living->push_back(alive);
-      most = std::max(most, (part.transpose() * view.residual).squaredNorm());
+      const double its = (part.transpose() * view.residual).squaredNorm();
+      if (its > most.first) most = {its, i};
     }
     return most;
   };
 
   // Most noise shapes are hopeless, with each candidate as without: a sample of the candidates
-  // tells.
+  // tells, and on a finer grid those that led on the coarse one.
+  MatrixXd sampled = whitened.sampled();
+  std::vector<Block> sample = whitened.sample();
+  std::vector<std::size_t> leading;
+  const auto keep_the_leading = [&] {
+    const double best = *std::max_element(best_likelihood.begin(), best_likelihood.end());
+    std::set<std::size_t> kept;
+    for (std::size_t k = 0; k < leading.size(); ++k) {
+      if (!sample.empty() && best_likelihood[k] > best - kUnsampled) kept.insert(leading[k]);
+    }
+    std::vector<Block> their;
+    std::vector<Index> columns;
+    for (const std::size_t i : kept) {
+      Block block = sample[i];
+      for (Index j = 0; j < block.width; ++j) columns.push_back(block.first + j);
+      block.first = std::ssize(columns) - block.width;
+      their.push_back(block);
+    }
+    sampled = MatrixXd(sampled(Eigen::all, columns));
+    sample = std::move(their);
+  };
   do {
     const std::size_t first = all.size();
+    if (first > 0 && !leading.empty()) keep_the_leading();
+    leading.resize(first == 0 ? grid.size() : 0);
     all.resize(grid.size());
     null_likelihood.resize(grid.size());
     best_likelihood.resize(grid.size());
@@ -98,10 +124,11 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
       view->residual = view->project(view->whitener->whiten(y_));
       view->squares = view->residual.squaredNorm();
       null_likelihood[k] = view->log_prior + evidence_(view->squares);
-      MatrixXd z = view->whitener->whiten(whitened.sampled());
+      MatrixXd z = view->whitener->whiten(sampled);
       const VectorXd lengths = z.colwise().norm();
       z = view->project(std::move(z));
-      const double most = explained(*view, z, lengths, whitened.sample(), nullptr);
+      const auto [most, which] = explained(*view, z, lengths, sample, nullptr);
+      if (first == 0) leading[k] = which;
       best_likelihood[k] = view->log_prior + evidence_(view->squares - most);
       all[k] = std::move(view);
     });
@@ -121,6 +148,10 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (merit_of(k) > std::log(kLeastShape) - kUnsampled) hopeful.push_back(k);
   }
+  std::sort(hopeful.begin(), hopeful.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(-merit_of(a), a) < std::pair(-merit_of(b), b);
+  });
+  if (hopeful.size() > kMostShapes) hopeful.resize(kMostShapes);
   in_parallel(hopeful.size(), [&](std::size_t i) {
     const std::size_t k = hopeful[i];
     View& view = *all[k];
@@ -130,7 +161,7 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
     view.alive.reserve(blocks);
     double most = 0.0;
     for (const Candidate& c : library_.candidates) {
-      most = std::max(most, explained(view, z, lengths, c.blocks, &view.alive));
+      most = std::max(most, explained(view, z, lengths, c.blocks, &view.alive).first);
     }
     best_likelihood[k] = view.log_prior + evidence_(view.squares - most);
     view.u = z.cast<float>();
@@ -141,7 +172,6 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
     if (merit_of(k) > std::log(kLeastShape)) ranked.emplace_back(-merit_of(k), k);
   }
   std::sort(ranked.begin(), ranked.end());
-  if (ranked.size() > kMostShapes) ranked.resize(kMostShapes);
   for (const auto& [merit, k] : ranked) views_.push_back(all[k]);
 
   best_block_.assign(library_.candidates.size(), 0);
