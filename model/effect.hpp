@@ -40,6 +40,8 @@ struct EffectInfo {
   bool has_history = false;
   /// The effect of the catalogue that this is another form of; empty: it is one itself.
   std::string_view form_of = {};
+  /// The simpler effect that it becomes at one end of its inner parameter; empty: none.
+  std::string_view limit = {};
 };
 
 /// An effect's regressor on a table's signals.

@@ -91,6 +91,7 @@ void add_effect(LibraryBuilder& builder, const Effect& effect) {
                       .own = static_cast<Eigen::Index>(info.columns.size()),
                       .slow = is_slow(id)};
   candidate.terms.push_back({.effect = id});
+  candidate.limit = info.limit;
   candidate.units.assign(info.units.begin(), info.units.end());
   const auto is_time = [](std::string_view name) {
     return name == "time_s" || name == "time_since_power_on_s";

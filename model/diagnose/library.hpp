@@ -45,6 +45,8 @@ struct Candidate {
   /// The simpler effect that it becomes in a limit of its inner parameter, and that is meant where
   /// this one does hardly better. Empty: none, or the catalogue's own affair.
   std::string extends;
+  /// The simpler effect at one end of its inner parameter (EffectInfo::limit).
+  std::string limit;
   bool pulse = false;  ///< begins and ends at an instant: two jumps
   bool slow = false;   ///< acts on the scale of the whole run: a random walk may look like it
   std::vector<Block> blocks;

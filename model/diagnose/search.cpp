@@ -356,7 +356,10 @@ class Search {
     if (near.size() > kMostRivals) near.resize(kMostRivals);
     std::vector<std::pair<double, std::string>> behind;
     for (const auto& [lag, c] : near) {
-      if (stage.plausible(c, lag, stage.effects()) > kRivalKept) {
+      // Where its own simpler limit does nearly as well, that may be meant.
+      const bool near_limit =
+          stage.candidate(c).name == stage.candidate(own).limit && lag < kNearlyAsWell;
+      if (near_limit || stage.plausible(c, lag, stage.effects()) > kRivalKept) {
         behind.emplace_back(std::max(lag, 0.0), stage.candidate(c).name);
       }
     }

@@ -103,6 +103,8 @@ struct SearchOptions {
 
 /// The model needs this many rows beyond its terms, or nothing can be said of noise or structure.
 inline constexpr Eigen::Index kFewestFreeRows = 7;
+/// exp(-3) of the likelihood: what one parameter more may gain by noise.
+inline constexpr double kNearlyAsWell = 6.0;
 
 SearchResult search(const SearchInput& input, const SearchOptions& options);
 

@@ -191,6 +191,14 @@ std::vector<Shape> shapes_at_rest(const Effect& effect, const Signals& signals) 
     out.push_back([&signals](double width) -> MatrixXd {
       return relaxing_loop(signals, signals.signal("temperature_c"), width);
     });
+  } else if (id == "coil_heating") {
+    // The copper warms the bench, and the bench the gyro: two equal poles.
+    out.push_back([&signals](double tau) -> MatrixXd {
+      using namespace effects;
+      const VectorXd bench =
+          lag(signals, signals.signal("coil_heat"), 0.5 * tau, Gap::kStepped, LagStart::kZero);
+      return lag(signals, bench, 0.5 * tau, Gap::kLinear, LagStart::kZero);
+    });
   } else if (id.starts_with("magnetic_saturation_")) {
     out.push_back([h = field(signals, id)](double scale) -> MatrixXd {
       return (h.array() / scale).atan().matrix();
@@ -203,9 +211,8 @@ std::vector<Shape> shapes_at_rest(const Effect& effect, const Signals& signals) 
         rate ? rate_between_ends(signals) : acceleration_between_ends(signals));
     out.push_back([own, other](double inner) { return own(other->signals, inner); });
     if (id == "temperature_rate_lagged") {
-      out.push_back([&signals](double tau) -> MatrixXd {
-        return lagged_rate_of_means(signals, tau);
-      });
+      out.push_back(
+          [&signals](double tau) -> MatrixXd { return lagged_rate_of_means(signals, tau); });
     }
     if (id == "temperature_rate") {
       out.push_back([&signals, tau = 0.5 * usual_duration(signals)](double) {

@@ -21,8 +21,6 @@ constexpr double kStands = 2.0;
 // How far a memory's beginning may lie beyond what the effect's coefficient makes of its input's
 // range: before the first row the input may have been somewhat outside.
 constexpr double kBeyondRangeOfInput = 1.5;
-// exp(-3) of the likelihood: what one parameter more may gain by noise.
-constexpr double kNearlyAsWell = 6.0;
 // Twice the log-likelihood that one parameter gains by chance in less than 5 %.
 constexpr double kPushes = 3.84;
 

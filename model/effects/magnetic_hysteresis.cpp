@@ -18,7 +18,8 @@ const Family& magnetic_hysteresis() {
            .excited_by = "up and down branches; a gap at zero field",
            .confused_with = "drift_linear, in a single loop; magnetic_settling_x",
            .source = "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions (Springer 1996)",
-           .has_history = true},
+           .has_history = true,
+           .limit = "magnetic_linear_x"},
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             return play(signals, field(signals, "field_x_ut"), inner[0]);
           },
@@ -35,7 +36,8 @@ const Family& magnetic_hysteresis() {
            .excited_by = "up and down branches; a gap at zero field",
            .confused_with = "drift_linear, in a single loop; magnetic_settling_y",
            .source = "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions (Springer 1996)",
-           .has_history = true},
+           .has_history = true,
+           .limit = "magnetic_linear_y"},
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             return play(signals, field(signals, "field_y_ut"), inner[0]);
           },
@@ -52,7 +54,8 @@ const Family& magnetic_hysteresis() {
            .excited_by = "up and down branches; a gap at zero field",
            .confused_with = "drift_linear, in a single loop; magnetic_settling_z",
            .source = "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions (Springer 1996)",
-           .has_history = true},
+           .has_history = true,
+           .limit = "magnetic_linear_z"},
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             return play(signals, field(signals, "field_z_ut"), inner[0]);
           },

@@ -16,7 +16,8 @@ const Family& magnetic_saturation() {
            .excited_by = "large fields",
            .confused_with =
                "magnetic_linear_x; a range limit of the supply, when the commanded field is used",
-           .source = "a magnetisation curve's usual approximation"},
+           .source = "a magnetisation curve's usual approximation",
+           .limit = "magnetic_linear_x"},
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             return (field(signals, "field_x_ut") / inner[0]).tanh();
           }),
@@ -30,7 +31,8 @@ const Family& magnetic_saturation() {
            .excited_by = "large fields",
            .confused_with =
                "magnetic_linear_y; a range limit of the supply, when the commanded field is used",
-           .source = "a magnetisation curve's usual approximation"},
+           .source = "a magnetisation curve's usual approximation",
+           .limit = "magnetic_linear_y"},
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             return (field(signals, "field_y_ut") / inner[0]).tanh();
           }),
@@ -44,7 +46,8 @@ const Family& magnetic_saturation() {
            .excited_by = "large fields",
            .confused_with =
                "magnetic_linear_z; a range limit of the supply, when the commanded field is used",
-           .source = "a magnetisation curve's usual approximation"},
+           .source = "a magnetisation curve's usual approximation",
+           .limit = "magnetic_linear_z"},
           [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
             return (field(signals, "field_z_ut") / inner[0]).tanh();
           })};

@@ -17,7 +17,8 @@ const FunctionEffect& temperature_hysteresis() {
        .excited_by = "heating and cooling branches",
        .confused_with = "drift_linear, without a cooling branch",
        .source = "M. Brokate, J. Sprekels, Hysteresis and Phase Transitions (Springer 1996)",
-       .has_history = true},
+       .has_history = true,
+       .limit = "temperature_linear"},
       [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         return play(signals, excess_temperature(signals), inner[0]);
       },

@@ -17,7 +17,8 @@ const FunctionEffect& temperature_rate_lagged() {
        .confused_with = "temperature_acceleration; temperature_rate with a short tau",
        .source =
            "D. M. Shupe, Applied Optics 19 (1980) 654, with the heat conduction of the winding",
-       .has_history = true},
+       .has_history = true,
+       .limit = "temperature_rate"},
       [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         return lag(signals, signals.signal("temperature_rate_c_per_h"), inner[0], Gap::kLinear,
                    LagStart::kEquilibrium, temperature_rates_of_gaps(signals));
