@@ -21,7 +21,6 @@
 #include "model/diagnose/refit_gates.hpp"
 #include "model/diagnose/thermometer.hpp"
 #include "model/diagnose/working_table.hpp"
-#include "model/effects/loop.hpp"
 #include "model/row_order.hpp"
 
 namespace fogbench::model {
@@ -62,13 +61,13 @@ config::ModelFile extended_by(config::ModelFile model, const Library& library,
 
 /// A search, and what it was made with.
 struct Searched {
-  Searched(Library tried, const NoiseShapes& shapes, const WorkingTable& table,
+  Searched(Library library, const NoiseShapes& shapes, const WorkingTable& table,
            const BaseColumns& base)
-      : library(std::move(tried)),
-        whitened(shapes, library),
+      : tried(std::move(library)),
+        whitened(shapes, tried),
         input{whitened, table.windows(), table.bench_rows(), base.columns, base.y} {}
 
-  const Library library;
+  const Library tried;
   const WhitenedLibrary whitened;
   const SearchInput input;
   SearchResult result;
@@ -136,7 +135,7 @@ class Work {
     const SearchInput& input_of_search = (*searched)->input;
     const SearchResult& found = (*searched)->result;
     take_over(found);
-    d_.not_testable = (*searched)->library.not_testable;
+    d_.not_testable = (*searched)->tried.not_testable;
     d_.judged = !found.p_of_step.empty() || found.p_outside < 1.0;
     if (!found.p_of_step.empty()) d_.p_adequate = found.p_of_step.front();
     doubt_the_thermometer(found);
@@ -183,8 +182,8 @@ class Work {
     options.outside_level = kShareOfShapes * options_.false_alarm_rate;
     options.seed = options_.seed;
     options.refit = [&](const std::vector<Found>& named) {
-      climb_ladder(out->library, named);
-      return refused_by_refit(d_.missing, d_.ladder, out->library);
+      climb_ladder(out->tried, named);
+      return refused_by_refit(d_.missing, d_.ladder, out->tried);
     };
     out->result = search(out->input, options);
     return out;
@@ -220,22 +219,6 @@ class Work {
     }
   }
 
-  /// The hysteresis effects that were found, refused, or could not be told from what was found.
-  static std::vector<std::string> hystereses_of(const SearchResult& result) {
-    std::vector<std::string> out;
-    const auto add = [&](const std::string& name) {
-      const bool known = std::find(out.begin(), out.end(), name) != out.end();
-      if (!known && !effects::loops_of(name).empty()) out.push_back(name);
-    };
-    for (const auto* list : {&result.found, &result.refused}) {
-      for (const Found& f : *list) {
-        add(f.effect);
-        for (const Rival& rival : f.rivals) add(rival.effect);
-      }
-    }
-    return out;
-  }
-
   /// The model with what was found beside the effect. Of what depends on the same signal only the
   /// first `of_same_signal`: the others may be the rest of the loop.
   config::ModelFile beside(const Searched& searched, const std::string& effect,
@@ -249,7 +232,7 @@ class Work {
       const bool apart = std::find(needed.begin(), needed.end(), signal) == needed.end();
       if (apart || of_same_signal-- > 0) others.push_back(f);
     }
-    return extended_by(model_, searched.library, others);
+    return extended_by(model_, searched.tried, others);
   }
 
   /// A loop stands in the last fit, with weights of one sign, and rows left out are predicted

@@ -1,5 +1,6 @@
 #include "model/diagnose/loop_choice.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/diagnose/heldout.hpp"
@@ -18,6 +19,21 @@ constexpr std::size_t kRowsOfUnknown = 6;
 constexpr std::size_t kInVain = 2;
 
 }  // namespace
+
+std::vector<std::string> hystereses_of(const SearchResult& result) {
+  std::vector<std::string> out;
+  const auto add = [&](const std::string& name) {
+    const bool known = std::find(out.begin(), out.end(), name) != out.end();
+    if (!known && !effects::loops_of(name).empty()) out.push_back(name);
+  };
+  for (const auto* list : {&result.found, &result.refused}) {
+    for (const Found& f : *list) {
+      add(f.effect);
+      for (const Rival& rival : f.rivals) add(rival.effect);
+    }
+  }
+  return out;
+}
 
 bool of_one_sign(const FitResult& fit, std::string_view term) {
   double sum = 0.0;

@@ -1,13 +1,18 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "model/diagnose/search.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "model/fit.hpp"
 
 namespace fogbench::model {
+
+/// The hysteresis effects that were found, refused, or could not be told from what was found.
+std::vector<std::string> hystereses_of(const SearchResult& result);
 
 /// The form of a hysteresis effect (effects/loop.hpp) that rows left out of the fit pay for, beside
 /// the terms of `model`: from one play on, more parts of the density have to predict them clearly
