@@ -18,9 +18,10 @@ using Eigen::VectorXd;
 
 // A column is not testable when the base leaves less than this of its whitened length.
 constexpr double kLeastLeft = 1e-3;
-// Shapes whose likelihood is below this fraction of the best, without and with every candidate, are
+// Shapes whose likelihood is below this fraction of the best, without a candidate and with one, are
 // not kept: they cannot move any statistic.
 constexpr double kLeastShape = 1e-3;
+constexpr double kShares[] = {0.0, 0.5, 0.8, 0.9, 0.97, 1.0};
 // What a point of a grid between those of the sample may gain, as a log-likelihood.
 constexpr double kUnsampled = 5.0;
 constexpr std::size_t kMostShapes = 12;
@@ -65,7 +66,7 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
   const std::size_t blocks = count_blocks(library_);
   ShapeGrid grid(shapes_);
   std::vector<std::shared_ptr<View>> all;
-  std::vector<double> null_likelihood, best_likelihood;
+  std::vector<double> null_likelihood, best_likelihood, gain;
 
   // What the best of some blocks explains, and which it is; made orthonormal in place.
   const auto explained = [](const View& view, MatrixXd& z, const VectorXd& lengths,
@@ -112,6 +113,7 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
     all.resize(grid.size());
     null_likelihood.resize(grid.size());
     best_likelihood.resize(grid.size());
+    gain.resize(grid.size());
     in_parallel(grid.size() - first, [&](std::size_t i) {
       const std::size_t k = first + i;
       auto view = std::make_shared<View>();
@@ -129,27 +131,35 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
       z = view->project(std::move(z));
       const auto [most, which] = explained(*view, z, lengths, sample, nullptr);
       if (first == 0) leading[k] = which;
+      gain[k] = most;
       best_likelihood[k] = view->log_prior + evidence_(view->squares - most);
       all[k] = std::move(view);
     });
   } while (grid.refine({null_likelihood, best_likelihood}));
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const double prior = grid.log_prior(k);
-    all[k]->log_prior += prior;
-    null_likelihood[k] += prior;
-    best_likelihood[k] += prior;
-  }
-  const auto merit_of = [&](std::size_t k) {
-    const double null = *std::max_element(null_likelihood.begin(), null_likelihood.end());
-    const double best = *std::max_element(best_likelihood.begin(), best_likelihood.end());
-    return std::max(null_likelihood[k] - null, best_likelihood[k] - best);
+  for (std::size_t k = 0; k < all.size(); ++k) all[k]->log_prior += grid.log_prior(k);
+  // A shape counts when it is likely for a candidate that explains such a share of what the best
+  // one does: rivals leave more than the leader, and the noise of their world is another one.
+  const auto merits = [&] {
+    std::vector<double> out(all.size(), kMinusInfinity);
+    for (const double share : kShares) {
+      std::vector<double> likelihood(all.size());
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        likelihood[k] = all[k]->log_prior + evidence_(all[k]->squares - share * gain[k]);
+      }
+      const double best = *std::max_element(likelihood.begin(), likelihood.end());
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        out[k] = std::max(out[k], likelihood[k] - best);
+      }
+    }
+    return out;
   };
+  std::vector<double> merit = merits();
   std::vector<std::size_t> hopeful;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (merit_of(k) > std::log(kLeastShape) - kUnsampled) hopeful.push_back(k);
+    if (merit[k] > std::log(kLeastShape) - kUnsampled) hopeful.push_back(k);
   }
   std::sort(hopeful.begin(), hopeful.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(-merit_of(a), a) < std::pair(-merit_of(b), b);
+    return std::pair(-merit[a], a) < std::pair(-merit[b], b);
   });
   if (hopeful.size() > kMostShapes) hopeful.resize(kMostShapes);
   in_parallel(hopeful.size(), [&](std::size_t i) {
@@ -163,16 +173,17 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
     for (const Candidate& c : library_.candidates) {
       most = std::max(most, explained(view, z, lengths, c.blocks, &view.alive).first);
     }
-    best_likelihood[k] = view.log_prior + evidence_(view.squares - most);
+    gain[k] = most;
     view.u = z.cast<float>();
   });
+  merit = merits();
 
   std::vector<std::pair<double, std::size_t>> ranked;
   for (const std::size_t k : hopeful) {
-    if (merit_of(k) > std::log(kLeastShape)) ranked.emplace_back(-merit_of(k), k);
+    if (merit[k] > std::log(kLeastShape)) ranked.emplace_back(-merit[k], k);
   }
   std::sort(ranked.begin(), ranked.end());
-  for (const auto& [merit, k] : ranked) views_.push_back(all[k]);
+  for (const auto& [worse, k] : ranked) views_.push_back(all[k]);
 
   best_block_.assign(library_.candidates.size(), 0);
   observed_ = scan(data_as_draw(), {}, Among::kAll, &best_block_);

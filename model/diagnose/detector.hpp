@@ -50,6 +50,8 @@ class Detector {
                           Among among = Among::kAll) const;
   /// What the candidate's best block contributes to the data, fitted: rows.
   Eigen::VectorXd fitted_signal(Eigen::Index candidate) const;
+  /// The noise shape that suits the candidate's best block best, by its number.
+  std::size_t best_view(Eigen::Index candidate) const;
   struct Coefficients {
     Eigen::VectorXd value;
     Eigen::VectorXd standard_error;
@@ -78,7 +80,6 @@ class Detector {
   /// lambdas(); for a single draw, also the index of each candidate's best block.
   Eigen::MatrixXd scan(const Draws& draws, const Eigen::VectorXd& signal, Among among,
                        std::vector<std::size_t>* best_block) const;
-  std::size_t best_view(Eigen::Index candidate) const;
   Draws data_as_draw() const;
 
   const NoiseShapes& shapes_;

@@ -79,10 +79,10 @@ Index Stage::leader(const std::vector<std::size_t>& refused) const {
 }
 
 double Stage::plausible(Index world, double lag, const std::vector<Index>& others) {
-  if (noise_.count == 0) noise_ = detector_.draw(kRivalDraws, seed_ + 1, best(effects_));
+  const Noise& noise = noise_of(world);
   const auto among = &others == &effects_ ? Detector::Among::kEffects : Detector::Among::kAll;
-  const MatrixXd leads = calibration_.lead(
-      detector_.lambdas(noise_, detector_.fitted_signal(world) / larger_noise(world), among));
+  const MatrixXd leads = calibration_.lead(detector_.lambdas(
+      noise.draws, detector_.fitted_signal(world) / larger_noise(world, noise), among));
   Index reached = 0;
   for (Index b = 0; b < leads.cols(); ++b) {
     double top = leads(world, b);
@@ -92,12 +92,18 @@ double Stage::plausible(Index world, double lag, const std::vector<Index>& other
   return static_cast<double>(reached) / static_cast<double>(leads.cols());
 }
 
-double Stage::larger_noise(Index world) const {
+const Stage::Noise& Stage::noise_of(Index world) {
+  const auto [known, is_new] = noise_.try_emplace(detector_.best_view(world));
+  if (is_new) known->second = {world, detector_.draw(kRivalDraws, seed_ + 1, world)};
+  return known->second;
+}
+
+double Stage::larger_noise(Index world, const Noise& noise) const {
   const double free = static_cast<double>(base_.rows() - base_.cols());
   const double own =
       static_cast<double>(detector_.best_block(world).width) + (candidate(world).parameter ? 1 : 0);
   const VectorXd& lambda = detector_.observed();
-  const double behind = std::max(lambda[best(effects_)] - lambda[world], 0.0);
+  const double behind = lambda[noise.beside] - lambda[world];
   return std::sqrt(std::exp(behind / free) * free / std::max(free - own, 1.0));
 }
 

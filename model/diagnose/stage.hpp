@@ -3,6 +3,7 @@
 // would make of that.
 
 #include <Eigen/Core>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -54,9 +55,16 @@ class Stage {
   std::vector<Bound> bounds() const;
 
  private:
-  /// How much larger the noise must be where `world` is the truth than the draws have it, which
-  /// were made beside the leader: by what the leader explains more, and for the parameters fitted.
-  double larger_noise(Eigen::Index world) const;
+  /// Noise as it is where a candidate is the truth: drawn beside it, or beside another one that the
+  /// same noise shape suits best.
+  struct Noise {
+    Eigen::Index beside;
+    Draws draws;
+  };
+  const Noise& noise_of(Eigen::Index world);
+  /// How much larger it must be where `world` is the truth: by what the other one explains more,
+  /// and for the parameters fitted.
+  double larger_noise(Eigen::Index world, const Noise& noise) const;
 
   const SearchInput& input_;
   Eigen::MatrixXd base_;
@@ -65,8 +73,7 @@ class Stage {
   Calibration calibration_;
   Eigen::VectorXd lead_;
   std::vector<Eigen::Index> effects_, shadows_;
-  /// Noise as it is when the leader is in the model; drawn when first needed.
-  Draws noise_;
+  std::map<std::size_t, Noise> noise_;  ///< by noise shape, drawn when first needed
 };
 
 }  // namespace fogbench::model
