@@ -132,6 +132,7 @@ Status fit_coloured(FitWork& work) {
     Result<GlsResult> held = gls(*shapes, system.x.leftCols(work.free()), system.y);
     if (!held) return held.error();
     work.beta = held->beta;
+    work.variance_at_inner = held->covariance.diagonal();
   }
   work.covariance = last->covariance;
   work.coverage = last->coverage_factor;
@@ -260,7 +261,7 @@ Result<FitResult> fit(const Table& table, const config::ModelFile& model,
   Result<Observations> observations =
       Observations::make(signals, *design, model.observable, options.weight_by, options.leave_out);
   if (!observations) return observations.error();
-  FitWork work{table, model, options, signals, *design, *observations, {}, {}, {}, {}, 2.0};
+  FitWork work{table, model, options, signals, *design, *observations, {}, {}, {}, {}, {}, 2.0};
   if (options.as_is) return hold(std::move(work));
 
   work.inner.resize(static_cast<Eigen::Index>(design->parameters().size()));

@@ -48,6 +48,9 @@ struct Estimate {
   double coverage_factor = 2.0;  ///< expanded uncertainty = factor * standard error (95.45 %)
   bool held = false;
   bool inner = false;  ///< an inner parameter
+  /// The standard error that is left when the model's inner parameters are held where they are;
+  /// missing where that is not known.
+  double error_at_inner = kMissing;
 };
 
 /// A row that was not believed (bad_rows.hpp).

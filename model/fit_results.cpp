@@ -112,6 +112,9 @@ void fill_estimates(FitWork& work) {
     const bool left_out = std::isnan(work.covariance(next, next)) && work.beta[next] == 0.0;
     result.estimates.push_back({column.name, column.unit, left_out ? kMissing : work.beta[next],
                                 error_of(next), work.coverage, false});
+    if (next < work.variance_at_inner.size()) {
+      result.estimates.back().error_at_inner = std::sqrt(work.variance_at_inner[next]);
+    }
     reported.push_back(next++);
   }
   next = work.free();  // past the starts

@@ -22,7 +22,9 @@ struct FitWork {
   Eigen::VectorXd inner;
   Eigen::VectorXd beta;        ///< of the free columns, the starts' after the model's own
   Eigen::MatrixXd covariance;  ///< of [free columns, inner], NaN where not determined
-  double coverage = 2.0;       ///< factor of the expanded uncertainty
+  Eigen::VectorXd
+      variance_at_inner;  ///< of the free columns, the inner parameters held; may be empty
+  double coverage = 2.0;  ///< factor of the expanded uncertainty
 
   Eigen::Index free() const { return static_cast<Eigen::Index>(design.free_columns().size()); }
   Eigen::Index unknowns() const { return free() + inner.size(); }

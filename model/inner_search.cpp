@@ -12,8 +12,10 @@
 namespace fogbench::model {
 namespace {
 
-/// A search may leave the typical range by this factor before it is stopped.
+/// A search may leave the typical range by this factor before it is stopped, where that gains more
+/// than this of chi squared: 5 % of what noise gains by one parameter.
 constexpr double kBeyondRange = 10.0;
+constexpr double kWorthLeaving = 3.84;
 /// Up to this many rows times parameters, several strategies are tried and the best one is kept.
 constexpr std::size_t kFewEnoughForAll = 10'000;
 
@@ -90,21 +92,30 @@ constexpr Strategy kStrategies[] = {
 };
 
 /// The least and greatest value that a search may reach.
-std::pair<double, double> bounds(const DesignParameter& parameter) {
+std::pair<double, double> bounds(const DesignParameter& parameter, double beyond) {
   if (!parameter.range) return {-HUGE_VAL, HUGE_VAL};
   if (!parameter.range->logarithmic) return {parameter.range->minimum, parameter.range->maximum};
-  return {parameter.range->minimum / kBeyondRange, parameter.range->maximum * kBeyondRange};
+  return {parameter.range->minimum / beyond, parameter.range->maximum * beyond};
+}
+
+bool within(const Observations& observations, const Eigen::VectorXd& inner, double beyond) {
+  for (Eigen::Index i = 0; i < inner.size(); ++i) {
+    const auto [least, most] =
+        bounds(observations.design().parameters()[static_cast<std::size_t>(i)], beyond);
+    if (!(inner[i] >= least && inner[i] <= most)) return false;
+  }
+  return true;
 }
 
 Eigen::VectorXd descend(const Observations& observations, Eigen::VectorXd inner,
-                        const Strategy& strategy) {
+                        const Strategy& strategy, double beyond) {
   const int count = static_cast<int>(inner.size());
   ceres::Problem problem;
   problem.AddParameterBlock(inner.data(), count);
   bool bounded = false;
   for (int i = 0; i < count; ++i) {
     const auto [least, most] =
-        bounds(observations.design().parameters()[static_cast<std::size_t>(i)]);
+        bounds(observations.design().parameters()[static_cast<std::size_t>(i)], beyond);
     if (!(most > least) || !std::isfinite(least)) continue;
     inner[i] = std::clamp(inner[i], least, most);
     problem.SetParameterLowerBound(inner.data(), i, least);
@@ -131,7 +142,7 @@ Eigen::VectorXd descend(const Observations& observations, Eigen::VectorXd inner,
 }
 
 /// Gauss-Newton steps, for the last digits that a trust region's stopping rules leave.
-Eigen::VectorXd polish(const Observations& observations, Eigen::VectorXd inner) {
+Eigen::VectorXd polish(const Observations& observations, Eigen::VectorXd inner, double beyond) {
   const Eigen::Index q = inner.size();
   std::optional<LinearFit> fit = fit_at(observations, inner, true);
   for (int step = 0; fit && step < 20; ++step) {
@@ -141,13 +152,7 @@ Eigen::VectorXd polish(const Observations& observations, Eigen::VectorXd inner) 
     const Eigen::VectorXd move =
         r.triangularView<Eigen::Upper>().solve(fit->joint.col(kept + q).segment(kept, q));
     const Eigen::VectorXd next = inner + move;
-    bool inside = true;
-    for (Eigen::Index i = 0; i < q; ++i) {
-      const auto [least, most] =
-          bounds(observations.design().parameters()[static_cast<std::size_t>(i)]);
-      inside = inside && next[i] >= least && next[i] <= most;
-    }
-    if (!inside) break;
+    if (!within(observations, next, beyond)) break;
     std::optional<LinearFit> better = fit_at(observations, next, true);
     if (!better || !(better->residual_sum_of_squares <= fit->residual_sum_of_squares)) break;
     const bool arrived = (move.array().abs() <= 1e-14 * inner.array().abs()).all();
@@ -196,6 +201,11 @@ Result<InnerSolution> solution_at(const Observations& observations, Eigen::Vecto
   return not_finite_at(observations, inner);
 }
 
+/// What a solution beyond the typical range may cost, in shares of one within it.
+double worth_leaving(const Observations& observations) {
+  return std::exp(-kWorthLeaving / static_cast<double>(observations.taken().size()));
+}
+
 void silence_ceres() {
   static std::once_flag once;
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
@@ -220,8 +230,17 @@ Error not_finite_at(const Observations& observations, const Eigen::VectorXd& inn
 Result<InnerSolution> refine_inner(const Observations& observations, const Eigen::VectorXd& start) {
   if (start.size() == 0) return solution_at(observations, start);
   silence_ceres();
-  return solution_at(observations,
-                     polish(observations, descend(observations, start, kStrategies[0])));
+  const auto descended = [&](const Eigen::VectorXd& from, double beyond) {
+    return polish(observations, descend(observations, from, kStrategies[0], beyond), beyond);
+  };
+  if (!within(observations, start, 1.0)) {
+    return solution_at(observations, descended(start, kBeyondRange));
+  }
+  const Eigen::VectorXd inside = descended(start, 1.0);
+  const Eigen::VectorXd outside = descended(inside, kBeyondRange);
+  const bool leaves =
+      cost_at(observations, outside) < cost_at(observations, inside) * worth_leaving(observations);
+  return solution_at(observations, leaves ? outside : inside);
 }
 
 Result<InnerSolution> search_inner(const Observations& observations) {
@@ -246,9 +265,11 @@ Result<InnerSolution> search_inner(const Observations& observations) {
   const auto y = start->fit.joint.cols() - 1;
   const double exact = kExact * start->fit.joint.col(y).squaredNorm();
   int agreed = 0;
+  double beyond = within(observations, inner, 1.0) ? 1.0 : kBeyondRange;
   const auto attempt = [&](const Eigen::VectorXd& from, const Strategy& strategy) {
     if (least <= exact || agreed >= kAgreement) return;
-    const Eigen::VectorXd found = polish(observations, descend(observations, from, strategy));
+    const Eigen::VectorXd found =
+        polish(observations, descend(observations, from, strategy, beyond), beyond);
     const double cost = cost_at(observations, found);
     if (std::abs(cost - least) <= kSameMinimum * least) ++agreed;
     if (!(cost < least * (1.0 - kSameMinimum))) return;
@@ -256,10 +277,19 @@ Result<InnerSolution> search_inner(const Observations& observations) {
     least = cost;
     best = found;
   };
+  // In the end beyond the typical range, where that pays.
+  const auto conclude = [&] {
+    if (beyond > 1.0 || within(observations, best, 0.999)) return solution_at(observations, best);
+    beyond = kBeyondRange;
+    agreed = 0;
+    const Eigen::VectorXd inside = best;
+    const double inside_cost = least;
+    attempt(inside, kStrategies[0]);
+    const bool leaves = least < inside_cost * worth_leaving(observations);
+    return solution_at(observations, leaves ? best : inside);
+  };
   attempt(inner, kStrategies[0]);
-  if (observations.taken().size() * parameters.size() > kFewEnoughForAll) {
-    return solution_at(observations, best);
-  }
+  if (observations.taken().size() * parameters.size() > kFewEnoughForAll) return conclude();
   // Small problems: starts about the given one and every strategy, as a descent may end in a poorer
   // minimum or on a plain.
   for (const double factor : {0.5, 2.0}) attempt(factor * inner, kStrategies[0]);
@@ -271,7 +301,7 @@ Result<InnerSolution> search_inner(const Observations& observations) {
       attempt(moved, kStrategies[0]);
     }
   }
-  return solution_at(observations, best);
+  return conclude();
 }
 
 }  // namespace fogbench::model

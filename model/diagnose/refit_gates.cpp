@@ -1,14 +1,10 @@
 #include "model/diagnose/refit_gates.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 namespace fogbench::model {
 namespace {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
 
 // An effect that is there makes predictions of rows left out no worse than this, chance included.
 constexpr double kWorse = 1.05;
@@ -20,35 +16,20 @@ bool stands(const Estimate& e) {
 }  // namespace
 
 void take_estimates(const FitResult& refit, MissingEffect& missing) {
-  std::vector<Index> at, inner;  // in the covariance, which holds what is free
-  Index free = 0;
-  bool any_stands = false;
+  bool any_stands = false, any_inner = false;
   for (const Estimate& e : refit.estimates) {
     const bool its = std::any_of(
         missing.terms.begin(), missing.terms.end(),
         [&](const std::string& id) { return e.name == id || e.name.starts_with(id + "."); });
-    if (its) {
-      missing.estimates.push_back(e);
-      at.push_back(e.held ? -1 : free);
-      if (!e.inner) {
-        any_stands = any_stands || stands(e);
-      } else if (!e.held) {
-        inner.push_back(free);
-      }
-    }
-    free += e.held ? 0 : 1;
+    if (!its) continue;
+    missing.estimates.push_back(e);
+    any_inner = any_inner || (e.inner && !e.held);
+    any_stands = any_stands || (!e.inner && stands(e));
   }
-  const MatrixXd& covariance = refit.covariance;
-  if (any_stands || inner.empty() || inner.back() >= covariance.rows()) return;
-  const Eigen::LLT<MatrixXd> together(covariance(inner, inner));
-  if (together.info() != Eigen::Success) return;
+  if (any_stands || !any_inner) return;
   missing.inner_open = true;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    if (at[i] < 0) continue;
-    const Eigen::VectorXd shared = covariance(inner, at[i]);
-    const double left = covariance(at[i], at[i]) - shared.dot(together.solve(shared));
-    missing.estimates[i].standard_error =
-        missing.estimates[i].inner ? kMissing : std::sqrt(std::max(0.0, left));
+  for (Estimate& e : missing.estimates) {
+    if (!e.held) e.standard_error = e.error_at_inner;
   }
 }
 
