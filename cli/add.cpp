@@ -11,7 +11,7 @@
 #include "config/model_file.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 
 namespace fogbench::cli {
 namespace {

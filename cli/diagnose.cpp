@@ -26,7 +26,7 @@
 #include "model/diagnose/diagnosis_report.hpp"
 #include "model/diagnose/verdict_text.hpp"
 #include "model/diagnose/working_table.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 
 namespace fogbench::cli {
 namespace {

@@ -5,59 +5,32 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <string_view>
 
+#include "model/effects/effect.hpp"
 #include "simulator/random.hpp"
 
 namespace fogbench::cli {
 namespace {
 
-/// By which ready procedures an effect shows; `acceptance` sweeps and heats, so it shows them all.
-enum class ExcitedBy { kSweep, kHeating, kBoth };
+/// The effects of one family: the axis is drawn after it.
+using Kind = std::vector<const model::EffectInfo*>;
 
-/// An inner parameter's range: inside the typical one of the catalogue, and where the procedure can
-/// tell it. The draw is uniform in its logarithm when the range does not begin at 0.
-struct Range {
-  std::string_view parameter;
-  double minimum, maximum;
-};
-
-struct Kind {
-  std::string_view effect;  ///< "magnetic_hysteresis_" takes an axis
-  ExcitedBy by;
-  std::vector<Range> inner = {};
-};
-
-// Left out is what these procedures cannot tell. magnetic_cross_*: two axes are never energised
-// together. magnetic_temperature_*: no sweep at a second temperature. magnetic_settling_*: one
-// window a level, in which it is a hysteresis of half a level's step to 4..14 % of its size; for
-// the same reason the widths of the hystereses begin where nothing else has their shape.
-// coil_heating: no field is held long enough.
-// earth_rate_projection: one rotation is a bias step. ambient_temperature: the room hardly moves.
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> all = {
-      {"magnetic_quadratic_", ExcitedBy::kSweep},
-      {"magnetic_saturation_", ExcitedBy::kSweep, {{"hs", 0.7, 2.0}}},
-      {"magnetic_hysteresis_", ExcitedBy::kSweep, {{"width", 0.6, 1.5}}},
-      {"temperature_quadratic", ExcitedBy::kHeating},
-      {"temperature_cubic", ExcitedBy::kHeating},
-      {"temperature_rate", ExcitedBy::kHeating},
-      {"temperature_rate_lagged", ExcitedBy::kHeating, {{"tau", 200.0, 1200.0}}},
-      {"temperature_rate_cross", ExcitedBy::kHeating},
-      {"temperature_gradient", ExcitedBy::kHeating},
-      {"temperature_hysteresis", ExcitedBy::kHeating, {{"width", 3.0, 8.0}}},
-      {"temperature_ripple",
-       ExcitedBy::kHeating,
-       {{"period", 4.0, 10.0}, {"phase_deg", 0.0, 360.0}}},
-      {"heater_power", ExcitedBy::kHeating},
-      {"bias_step", ExcitedBy::kBoth, {{"t0", 3000.0, 8000.0}}},
-      {"drift_linear", ExcitedBy::kBoth},
-      {"warm_up", ExcitedBy::kBoth, {{"tau", 900.0, 3600.0}}}};
-  return all;
-}
-
-bool takes_an_axis(const Kind& kind) {
-  return kind.effect.back() == '_';
+/// Those that ready procedures tell from the others. `acceptance` sweeps and heats: it shows them
+/// all.
+std::vector<Kind> kinds(bool swept, bool heated) {
+  std::vector<Kind> out;
+  for (const model::Effect* effect : model::catalogue()) {
+    const model::EffectInfo& info = effect->info();
+    if (!info.in_challenge) continue;
+    using By = model::InChallenge::By;
+    const By by = info.in_challenge->by;
+    if ((by == By::kSweep && !swept) || (by == By::kHeating && !heated)) continue;
+    if (out.empty() || info.family.empty() || out.back().front()->family != info.family) {
+      out.emplace_back();
+    }
+    out.back().push_back(&info);
+  }
+  return out;
 }
 
 class Draw {
@@ -76,13 +49,13 @@ class Draw {
     return static_cast<std::size_t>(source_.uniform() * static_cast<double>(size));
   }
 
-  config::HiddenEffect effect(const Kind& kind) {
+  /// Uniform in the logarithm of a range that does not begin at 0.
+  config::HiddenEffect effect(const model::EffectInfo& info) {
     config::HiddenEffect hidden;
-    hidden.effect = kind.effect;
-    if (takes_an_axis(kind)) hidden.effect += "xyz"[index(3)];
+    hidden.effect = info.id;
     hidden.amplitude = sign();
-    for (const Range& range : kind.inner) {
-      hidden.parameters[std::string(range.parameter)] =
+    for (const auto& [parameter, range] : info.in_challenge->ranges) {
+      hidden.parameters[parameter] =
           three_digits(range.minimum > 0.0 ? logarithmic(range.minimum, range.maximum)
                                            : uniform(range.minimum, range.maximum));
     }
@@ -135,15 +108,13 @@ ChallengeDraw draw_challenge(std::uint64_t seed) {
   out.model.name = "start";
   out.model.description = "A bias and what the procedure excites, linear: all left to the fit.";
 
-  std::vector<Kind> possible;
-  std::copy_if(kinds().begin(), kinds().end(), std::back_inserter(possible), [&](const Kind& k) {
-    return k.by == ExcitedBy::kBoth || (k.by == ExcitedBy::kSweep ? swept : heated);
-  });
+  std::vector<Kind> possible = kinds(swept, heated);
   const double how_many = draw.uniform(0.0, 1.0);
   const std::size_t count = how_many < 0.125 ? 0 : how_many < 0.325 ? 2 : 1;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t chosen = draw.index(possible.size());
-    out.scenario.hidden.push_back(draw.effect(possible[chosen]));
+    const Kind& kind = possible[chosen];
+    out.scenario.hidden.push_back(draw.effect(*kind[draw.index(kind.size())]));
     out.visibility.push_back(draw.logarithmic(3.0, 8.0));
     possible.erase(possible.begin() + static_cast<std::ptrdiff_t>(chosen));
   }
@@ -152,12 +123,8 @@ ChallengeDraw draw_challenge(std::uint64_t seed) {
 
 std::vector<std::string> hideable_effects() {
   std::vector<std::string> all;
-  for (const Kind& kind : kinds()) {
-    if (!takes_an_axis(kind)) {
-      all.emplace_back(kind.effect);
-      continue;
-    }
-    for (const char axis : {'x', 'y', 'z'}) all.push_back(std::string(kind.effect) + axis);
+  for (const Kind& kind : kinds(true, true)) {
+    for (const model::EffectInfo* info : kind) all.push_back(info->id);
   }
   return all;
 }

@@ -10,7 +10,7 @@
 
 #include "config/json_file.hpp"
 #include "config/place.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 
 namespace fogbench::cli {
 namespace {

@@ -107,6 +107,7 @@ struct ThermalPlant {
   Celsius ambient_wander{0.3};  ///< amplitude of the room's slow change
   Seconds ambient_period{7200.0};
   double gradient_c_per_w = 0.05;  ///< working 1 - working 2, per watt of boost heating
+  Seconds gradient_lag{0.0};       ///< after which it follows the heating; 0: at once
 };
 
 struct MagneticPlant {

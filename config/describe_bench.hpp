@@ -162,6 +162,8 @@ void describe(Visitor& v, ThermalPlant& t) {
   v.optional("ambient_period_s", t.ambient_period, "Period of its slow change.", above(0));
   v.optional("gradient_c_per_w", t.gradient_c_per_w,
              "Working 1 less working 2, per watt of boost heating.");
+  v.optional("gradient_lag_s", t.gradient_lag,
+             "The lag at which it follows the heating; 0: at once.", at_least(0));
 }
 
 template <class Visitor>

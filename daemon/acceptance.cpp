@@ -11,6 +11,7 @@
 #include "daemon/export.hpp"
 #include "daemon/run_table.hpp"
 #include "model/contrast.hpp"
+#include "model/effects/effect.hpp"
 #include "model/repeatability.hpp"
 #include "model/table.hpp"
 
@@ -132,7 +133,7 @@ model::RunCoefficients magnetic_coefficients(const TestResults& test,
   for (const model::Estimate& e : test.fit->estimates) {
     if (e.held) continue;
     ++row;
-    if (!e.name.starts_with("magnetic_linear_") || !std::isfinite(e.standard_error)) continue;
+    if (!model::is_field_sensitivity(e.name) || !std::isfinite(e.standard_error)) continue;
     names.push_back(e.name);
     values.push_back(e.value);
     rows.push_back(row);

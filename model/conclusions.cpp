@@ -9,6 +9,7 @@
 
 #include "config/rounding.hpp"
 #include "config/units.hpp"
+#include "model/effects/effect.hpp"
 #include "model/partition.hpp"
 #include "model/repeatability.hpp"
 
@@ -165,7 +166,7 @@ RunCoefficients magnetic_part(const RunFit& run, std::vector<std::string>& names
   Eigen::Index k = 0;
   for (const Estimate& estimate : run.fit.estimates) {
     if (estimate.held) continue;
-    if (estimate.name.starts_with("magnetic_linear_") && std::isfinite(estimate.value)) {
+    if (is_field_sensitivity(estimate.name) && std::isfinite(estimate.value)) {
       chosen.push_back(k);
       values.push_back(estimate.value);
       names.push_back(estimate.name);
@@ -188,7 +189,7 @@ void say_differences(std::vector<std::string>& out, const std::vector<RunFit>& r
       const Estimate& a = runs[0].fit.estimates[k];
       const auto& others = runs[r].fit.estimates;
       if (k >= others.size() || others[k].name != a.name || a.held) continue;
-      if (a.name.starts_with("magnetic_linear_")) continue;
+      if (is_field_sensitivity(a.name)) continue;
       const Estimate& b = others[k];
       const double expanded =
           std::hypot(a.coverage_factor * a.standard_error, b.coverage_factor * b.standard_error);

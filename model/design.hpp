@@ -11,7 +11,7 @@
 
 #include "config/model_file.hpp"
 #include "config/result.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 #include "model/expression.hpp"
 #include "model/reduction.hpp"
 #include "model/signals.hpp"

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "config/units.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -138,6 +138,9 @@ bool Signals::available(std::string_view name) const {
   if (name == "temperature_acceleration_c_per_h2") {
     return has_numbers("time_s") && available("temperature_rate_c_per_h");
   }
+  if (name == "temperature_gradient_rate_c_per_h") {
+    return has_numbers("time_s") && has_numbers("temperature_gradient_c");
+  }
   if (name == "coil_heat") {
     return has_both_currents() || has_numbers("coil_current_a") ||
            std::any_of(kFields.begin(), kFields.end(), [&](auto f) { return has_numbers(f); });
@@ -155,6 +158,8 @@ std::vector<std::string> Signals::missing_for(const EffectInfo& info) const {
       missing.emplace_back("time_s");
     } else if (name == "temperature_acceleration_c_per_h2") {
       missing.emplace_back(available("time_s") ? "temperature_rate_c_per_h" : "time_s");
+    } else if (name == "temperature_gradient_rate_c_per_h") {
+      missing.emplace_back(available("time_s") ? "temperature_gradient_c" : "time_s");
     } else {
       missing.emplace_back(name);
     }
@@ -195,6 +200,9 @@ Signals::Values Signals::derive(std::string_view name) const {
     return has_numbers("duration_s") && has_numbers("temperature_c")
                ? acceleration_of_windows()
                : slope_per_hour("temperature_rate_c_per_h", kRateHalfWindow_s);
+  }
+  if (name == "temperature_gradient_rate_c_per_h") {
+    return slope_per_hour("temperature_gradient_c", kRateHalfWindow_s);
   }
   if (name == "coil_heat") return coil_heat();
   if (name == "time_since_start_s") return time_since_start();

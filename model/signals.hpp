@@ -9,6 +9,7 @@
 //   temperature_acceleration_c_per_h2  the same slope of the temperature rate; of averages, which
 //   are
 //                             smooth already, over the neighbouring rows only
+//   temperature_gradient_rate_c_per_h  slope of temperature_gradient_c, as the temperature's
 //   duration_s                0: a row is then a sample, not an average
 //   coil_heat                 sum of the squared currents of both coil pairs, A^2; where these are
 //                             not both given, of coil_current_a; where that is not given either, of

@@ -74,7 +74,7 @@ Status HiddenEffects::add(const config::HiddenEffect& hidden, const std::string&
     return Error{ErrorCode::kBadInput,
                  fmt::format("{}: the amplitude of {} is not a finite number", where, entry.id)};
   }
-  terms_.push_back({hidden.amplitude, entry.id.starts_with("magnetic_"), entry.make(inner)});
+  terms_.push_back({hidden.amplitude, entry.through_shield, entry.make(inner)});
   return {};
 }
 

@@ -49,7 +49,10 @@ void ThermalPhysics::advance(const HeaterPower& power) {
   carrier_acceleration_c_per_h2_ =
       (rate - carrier_rate_c_per_h_) / (step_s_ / config::kSecondsPerHour);
   carrier_rate_c_per_h_ = rate;
-  gradient_c_ = plant_.gradient_c_per_w * arriving.boost_w;
+  const double settled_c = plant_.gradient_c_per_w * arriving.boost_w;
+  const double lag_s = plant_.gradient_lag.count();
+  gradient_c_ = lag_s > 0.0 ? settled_c + (gradient_c_ - settled_c) * std::exp(-step_s_ / lag_s)
+                            : settled_c;
 }
 
 }  // namespace fogbench::simulator

@@ -192,8 +192,10 @@ class Work {
   /// Where rows left out pay for more than one play, searches again with that form of the loop in
   /// the play's place, and keeps what is found where it pays there too. Once more when something
   /// is found beside the loop, which its form was chosen without.
+  /// A search that found one effect in one shape, and nothing beside it, has seen no such loop.
   void look_for_loops(LibrarySource source, const NoiseShapes& shapes, const BaseColumns& base,
                       std::unique_ptr<Searched>& searched) {
+    if (all_is_said(searched->result)) return;
     for (int turn = 0; turn < 2; ++turn) {
       const std::vector<config::ModelTerm> before = std::exchange(source.forms, {});
       for (const std::string& effect : hystereses_of(searched->result)) {
@@ -217,6 +219,13 @@ class Work {
       searched = std::move(*looped);
       if (searched->result.found.size() < 2) return;
     }
+  }
+
+  bool all_is_said(const SearchResult& result) const {
+    return result.refused.empty() && result.outside_shape.empty() && result.found.size() < 2 &&
+           std::all_of(result.found.begin(), result.found.end(),
+                       [](const Found& f) { return f.more.empty(); }) &&
+           !(d_.ladder.back().heldout_rms > kFarFromFloor * d_.ladder.back().rms);
   }
 
   /// The model with what was found beside the effect. Of what depends on the same signal only the
@@ -351,16 +360,18 @@ class Work {
   /// A thermometer that reads late makes of the model's own slope an effect of the rate.
   void doubt_rates(double slope) {
     for (const MissingEffect& m : d_.missing) {
-      if (m.found.effect != "temperature_rate" || m.estimates.empty()) continue;
+      const Effect* known = find_effect(m.found.effect);
+      if (known == nullptr || !known->info().like_a_late_thermometer) continue;
+      if (m.estimates.empty()) continue;
       const auto lag_s = lag_that_does_the_same(m.estimates.front().value, slope);
       if (!lag_s) continue;
       auto set = std::find_if(d_.ambiguous.begin(), d_.ambiguous.end(),
                               [&](const auto& s) { return s.front() == m.found.effect; });
       if (set == d_.ambiguous.end()) set = d_.ambiguous.insert(set, {m.found.effect});
       set->emplace_back("thermometer_lag");
-      d_.notes.push_back(fmt::format(
-          "A thermometer that reads {:.0f} s late would look the same as temperature_rate.",
-          *lag_s));
+      d_.notes.push_back(
+          fmt::format("A thermometer that reads {:.0f} s late would look the same as {}.", *lag_s,
+                      m.found.effect));
     }
   }
 
@@ -396,9 +407,9 @@ class Work {
     const std::string id = "magnetic_change_between_runs";
     std::string sum;
     for (const Estimate& e : d_.before.fit.estimates) {
-      if (!e.name.starts_with("magnetic_linear_")) continue;
-      sum += fmt::format("{}({:.6g}) * field_{}_ut / 100", sum.empty() ? "" : " + ", e.value,
-                         e.name.back());
+      if (!is_field_sensitivity(e.name)) continue;
+      sum += fmt::format("{}({:.6g}) * {} / 100", sum.empty() ? "" : " + ", e.value,
+                         find_effect(e.name)->info().signals.front());
     }
     config::ModelFile wider = model_;
     config::ModelTerm term;
@@ -433,7 +444,9 @@ class Work {
 
   void conclude(const SearchResult& found, const Adequacy& adequacy) {
     d_.unexplained.p_value = adequacy.p_value;
-    const bool rough = adequacy.p_value <= kShareOfSmooth * options_.false_alarm_rate;
+    const double level =
+        d_.missing.empty() ? kShareOfSmooth * options_.false_alarm_rate : kLeftBesideFound;
+    const bool rough = adequacy.p_value <= level;
     const bool outside = !found.outside_shape.empty() && !within_steps_;
     const bool uneven = rough && !within_steps_;
     if (rough != uneven) {
@@ -447,7 +460,19 @@ class Work {
       d_.unexplained.p_value = std::min(d_.unexplained.p_value, found.p_outside);
       d_.unexplained.shape = found.outside_shape;
     }
-    if (uneven || outside || d_.far_from_floor) {
+    // A range that misses by more than chance allows is left, whatever the search makes of it.
+    const double p_region = d_.before.p_adequate / kShareOfRegions;
+    const bool missed =
+        d_.judged && d_.missing.empty() && !within_steps_ && p_region <= options_.false_alarm_rate;
+    if (missed) {
+      d_.unexplained.p_value = std::min(d_.unexplained.p_value, p_region);
+      const std::string& variable = d_.before.regions.front().variable;
+      auto& on = d_.unexplained.depends_on;
+      if (!variable.empty() && std::find(on.begin(), on.end(), variable) == on.end()) {
+        on.insert(on.begin(), variable);
+      }
+    }
+    if (uneven || outside || missed || d_.far_from_floor) {
       d_.verdict = Verdict::kUnexplained;
       d_.p_adequate = std::min(d_.p_adequate, d_.unexplained.p_value);
     } else if (!d_.ambiguous.empty()) {

@@ -8,7 +8,7 @@
 
 #include "config/rounding.hpp"
 #include "model/diagnose/verdict_text.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 #include "model/report_page.hpp"
 #include "model/report_plots.hpp"
 #include "model/svg_plot.hpp"

@@ -137,6 +137,21 @@ void add_field_experiments(List& list, const BenchState& state, char axis) {
                          name, second_c, second_c),
              bench, kField, axis);
   }
+  {
+    BenchSchedule bench = warm_at(state, axis, state.held_c);
+    const std::vector<double> ramp{0, 150, 300, 150, 0, -150, -300, -150, 0};
+    bench.sweep(axis, ramp, 60.0);
+    bench.heat(Heater::kBoost, 55.0);
+    bench.sweep(axis, ramp, 60.0);
+    bench.heat(Heater::kOff);
+    bench.sweep(axis, ramp, 60.0);
+    list.add(
+        "ramp_" + letter,
+        fmt::format("sweep O{} at rest, while the boost heaters warm the gyro towards 55 degC, "
+                    "and while it cools (field-on-ramp)",
+                    name),
+        bench, {.field = true, .temperature = true, .together = true}, axis);
+  }
 }
 
 void add_cross_experiments(List& list, const BenchState& state) {

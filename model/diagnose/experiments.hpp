@@ -12,6 +12,7 @@ struct Experiment {
   /// What it varies. Nobody heats to learn about a drift.
   struct About {
     bool field = false, temperature = false, azimuth = false;
+    bool together = false;  ///< of use only for what acts through all of these
   };
 
   std::string key;     ///< "hold_z": short, for tests

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/diagnose/moving_signals.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "model/expression.hpp"
 #include "model/measurement_columns.hpp"
+#include "model/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "model/diagnose/library_builder.hpp"
-#include "model/diagnose/moving_signals.hpp"
 #include "model/expression.hpp"
+#include "model/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -26,11 +26,6 @@ constexpr std::size_t kMostRunsOneByOne = 8, kMostRuns = 40;
 // A user's inner parameter is looked for within this factor of the value that he gave.
 constexpr double kUsersRange = 5.0;
 constexpr double kRipplePeriods = 1.2;  // fewer inside the range look like a polynomial
-
-bool is_slow(std::string_view id) {
-  return id == "drift_linear" || id == "warm_up" || id == "bias_step" ||
-         id == "ambient_temperature" || id == "coil_heating";
-}
 
 /// Instants at which a jump can be told from its neighbours: the middles between rows.
 std::vector<double> jump_places(const Signals& signals) {
@@ -49,13 +44,12 @@ std::vector<double> jump_places(const Signals& signals) {
   return thinned;
 }
 
-std::vector<double> grid_of(const InnerParameter& parameter, std::string_view effect,
-                            const Signals& signals) {
-  if (parameter.name == "t0") return jump_places(signals);
+std::vector<double> grid_of(const InnerParameter& parameter, const Signals& signals) {
+  if (parameter.instant) return jump_places(signals);
   double least = parameter.minimum, most = parameter.maximum;
   int points = kGridPoints;
-  if (effect == "temperature_ripple") {
-    const auto t = moving_signal(signals, "temperature_c");
+  if (!parameter.period_of.empty()) {
+    const auto t = moving_signal(signals, parameter.period_of);
     if (t) most = std::min(most, t->span() / kRipplePeriods);
     if (most <= least) return {};
     points *= 2;
@@ -70,16 +64,16 @@ std::vector<double> grid_of(const InnerParameter& parameter, std::string_view ef
 }
 
 void add_grid(LibraryBuilder& builder, Candidate candidate) {
-  const std::vector<double> grid =
-      candidate.parameter ? grid_of(*candidate.parameter, candidate.name, builder.signals())
-                          : std::vector<double>{0.0};
+  const std::vector<double> grid = candidate.parameter
+                                       ? grid_of(*candidate.parameter, builder.signals())
+                                       : std::vector<double>{0.0};
   builder.add_on_grid(std::move(candidate), grid);
 }
 
 void add_effect(LibraryBuilder& builder, const Effect& effect) {
   const Signals& signals = builder.signals();
   const EffectInfo& info = effect.info();
-  const std::string id(info.id);
+  const std::string& id = info.id;
   if (const auto missing = signals.missing_for(info); !missing.empty()) {
     return builder.refuse(id, fmt::format("the table has no {}", fmt::join(missing, ", ")));
   }
@@ -89,7 +83,7 @@ void add_effect(LibraryBuilder& builder, const Effect& effect) {
   Candidate candidate{.name = id,
                       .kind = Candidate::Kind::kEffect,
                       .own = static_cast<Eigen::Index>(info.columns.size()),
-                      .slow = is_slow(id)};
+                      .slow = info.slow};
   candidate.terms.push_back({.effect = id});
   candidate.limit = info.limit;
   candidate.units.assign(info.units.begin(), info.units.end());
@@ -219,11 +213,11 @@ Status add_changes_between_runs(LibraryBuilder& builder) {
     Candidate magnetic{.name = "magnetic_change_between_runs" + suffix,
                        .kind = Candidate::Kind::kEffect};
     for (const config::ModelTerm& term : builder.source().model.terms) {
-      if (!term.effect.starts_with("magnetic_linear_")) continue;
-      magnetic.terms.push_back(
-          {.effect = fmt::format("{}_change{}", term.effect, suffix),
-           .expression = since(fmt::format(" * field_{}_ut / 100", term.effect.back())),
-           .unit = "deg/h per 100 uT"});
+      if (!is_field_sensitivity(term.effect)) continue;
+      const std::string& field = find_effect(term.effect)->info().signals.front();
+      magnetic.terms.push_back({.effect = fmt::format("{}_change{}", term.effect, suffix),
+                                .expression = since(fmt::format(" * {} / 100", field)),
+                                .unit = "deg/h per 100 uT"});
     }
     Candidate bias{.name = name + suffix, .kind = Candidate::Kind::kEffect};
     bias.terms.push_back({.effect = bias.name, .expression = since(""), .unit = "deg/h"});

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "config/model_file.hpp"
-#include "model/diagnose/shapes.hpp"
 #include "model/diagnose/working_table.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
+#include "model/effects/shapes.hpp"
 #include "model/signals.hpp"
 
 namespace fogbench::model {
@@ -53,7 +53,7 @@ struct Candidate {
 
   bool shadow() const { return kind == Kind::kShadow; }
   /// The inner parameter is an instant: its likelihood is a staircase, without a tangent.
-  bool instant() const { return parameter && parameter->name == "t0"; }
+  bool instant() const { return parameter && parameter->instant; }
   /// Distance between the grid points around a value of the inner parameter.
   double spacing(double inner) const;
 };

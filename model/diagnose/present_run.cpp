@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/diagnose/moving_signals.hpp"
+#include "model/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 // A rival is dropped when its own world produces the leader's lead in less than this share of
 // draws; a shadow convicts the leader below kOutside.
 constexpr double kRivalKept = 0.01;
-constexpr double kOutside = 0.004;
+constexpr double kOutside = 0.003;
 // Each takes a simulation; who needs more has learned that he cannot tell.
 constexpr std::size_t kMostRivals = 8;
 // A shape that is the effect itself in these data, but for rounding, is ahead by less than this.
@@ -159,7 +159,8 @@ class Search {
     }
     if (stage.shadows().empty()) return false;
     const Index best = stage.best(stage.shadows());
-    convict(stage.candidate(best).name, stage.p_value(best), options_.outside_level);
+    convict(stage.candidate(best).name, stage.p_value(best),
+            found().empty() ? options_.outside_level : kLeftBesideFound);
     return false;
   }
 

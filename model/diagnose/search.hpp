@@ -91,9 +91,10 @@ struct Refused {
 };
 
 struct SearchOptions {
-  double first_level = 0.04;     ///< of the first step
-  double later_level = 0.01;     ///< of the next ones
-  double outside_level = 0.005;  ///< of a shape from outside where no effect is left to be found
+  double first_level = 0.04;   ///< of the first step
+  double later_level = 0.004;  ///< of the next ones
+  /// Of a shape from outside where no effect is left to be found.
+  double outside_level = 0.005;
   std::size_t most_effects = 5;
   std::uint64_t seed = 20260101;
   /// Asked of effects that have passed all gates, none included: which of them a refit that leaves
@@ -105,6 +106,10 @@ struct SearchOptions {
 inline constexpr Eigen::Index kFewestFreeRows = 7;
 /// exp(-3) of the likelihood: what one parameter more may gain by noise.
 inline constexpr double kNearlyAsWell = 6.0;
+
+/// What is left beside effects that were found has to be this rare: it is asked of every table in
+/// which something is found, and the right answer is to be spoiled in hardly any of them.
+inline constexpr double kLeftBesideFound = 0.002;
 
 SearchResult search(const SearchInput& input, const SearchOptions& options);
 

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "model/diagnose/library_builder.hpp"
-#include "model/diagnose/moving_signals.hpp"
 #include "model/effects/sensitivity.hpp"
 #include "model/measurement_columns.hpp"
 #include "model/median.hpp"
+#include "model/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {

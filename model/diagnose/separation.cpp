@@ -2,11 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "model/design.hpp"
-#include "model/diagnose/moving_signals.hpp"
+#include "model/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -20,28 +19,9 @@ constexpr double kDependent = 1e-9;  // of a normalised column: spanned by those
 constexpr double kNothingLeft = 1e-12;
 constexpr Index kNoiseWindows = 24;
 
-struct Elementary {
-  const char* effect;
-  const char* signal;
-};
-constexpr std::array<Elementary, 12> kElementary = {{
-    {"temperature_linear", "temperature_c"},
-    {"temperature_quadratic", "temperature_c"},
-    {"temperature_rate", "temperature_rate_c_per_h"},
-    {"temperature_rate_cross", "temperature_rate_c_per_h"},
-    {"temperature_gradient", "temperature_gradient_c"},
-    {"magnetic_linear_x", "field_x_ut"},
-    {"magnetic_linear_y", "field_y_ut"},
-    {"magnetic_linear_z", "field_z_ut"},
-    {"magnetic_quadratic_x", "field_x_ut"},
-    {"magnetic_quadratic_y", "field_y_ut"},
-    {"magnetic_quadratic_z", "field_z_ut"},
-    {"earth_rate_projection", "azimuth_deg"},
-}};
-
 bool is_instant(const Effect& effect) {
   const auto& parameters = effect.info().parameters;
-  return !parameters.empty() && parameters.front().name == "t0";
+  return !parameters.empty() && parameters.front().instant;
 }
 
 MatrixXd finite(const MatrixXd& columns) {
@@ -179,10 +159,11 @@ MatrixXd Separation::new_to_the_model(const Recorded& more) const {
   const Signals before(present_.table, base_model_.reference_temperature_c);
   const Signals after(more.table, base_model_.reference_temperature_c);
   MatrixXd out(static_cast<Index>(after.rows()), 0);
-  for (const Elementary& e : kElementary) {
-    const double least = least_excitation(e.signal);
-    if (!moving_signal(after, e.signal, least) || moving_signal(before, e.signal, least)) continue;
-    const Effect* effect = find_effect(e.effect);
+  for (const Effect* effect : catalogue()) {
+    const std::string& signal = effect->info().elementary_in;
+    if (signal.empty()) continue;
+    const double least = least_excitation(signal);
+    if (!moving_signal(after, signal, least) || moving_signal(before, signal, least)) continue;
     const bool member = std::any_of(members_.begin(), members_.end(),
                                     [&](const Member& m) { return m.effect == effect; });
     if (member || !after.missing_for(effect->info()).empty()) continue;
@@ -263,11 +244,6 @@ double Separation::squared(const MatrixXd& gram, std::size_t member, const Truth
 MatrixXd Separation::present_columns(std::size_t member, std::size_t block) const {
   const Signals signals(present_.table, base_model_.reference_temperature_c);
   return finite(members_[member].effect->regressor(signals, members_[member].blocks[block].inner));
-}
-
-bool is_elementary(std::string_view effect) {
-  return std::any_of(kElementary.begin(), kElementary.end(),
-                     [&](const Elementary& e) { return effect == e.effect; });
 }
 
 double squared_noise_separation(double hours, const NoiseCoefficients& truth,

@@ -17,7 +17,7 @@
 
 #include "config/model_file.hpp"
 #include "model/diagnose/bench_schedule.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 
 namespace fogbench::model {
 
@@ -86,9 +86,6 @@ class Separation {
   Eigen::MatrixXd triangle_;  // of the present rows, whitened: all that is needed of them
   Eigen::MatrixXd present_gram_;
 };
-
-/// Is the effect the first that one thinks of when its signal moves: of first or second order?
-bool is_elementary(std::string_view effect);
 
 /// Twice the Kullback-Leibler divergence of one noise from another over `hours` of record, the bias
 /// left free: the square of the separation by which a record tells the two noises apart. From 24

@@ -210,6 +210,7 @@ bool SetChoice::concerns(const Experiment& experiment) const {
       experiment.axis == 0 || axes.empty() || axes.find(experiment.axis) != std::string::npos;
   const Experiment::About& about = experiment.about;
   if (!about.field && !about.temperature && !about.azimuth) return true;
+  if (about.together) return set.field && set.temperature && on_axis;
   return (about.field && set.field && on_axis) || (about.temperature && set.temperature) ||
          (about.azimuth && set.azimuth);
 }
@@ -244,7 +245,8 @@ std::string SetChoice::of_present(const Pairs& pairs) const {
   // A jump is sought at the same time in every run: one that does not come back looks like one that
   // was half as high.
   const bool jump = std::any_of(effects_.begin(), effects_.end(), [](const Effect* effect) {
-    return effect->info().id == "bias_step";
+    const auto& parameters = effect->info().parameters;
+    return !parameters.empty() && parameters.front().instant;
   });
   const double times = std::ceil(std::pow(kAim / std::max(once, 1e-9), 2));
   if (jump || times > kMostPresentTimes) {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "model/diagnose/library_builder.hpp"
-#include "model/diagnose/moving_signals.hpp"
+#include "model/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -11,6 +11,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+constexpr const char* kTemperatureRate = "temperature_rate_c_per_h";
 constexpr int kKinks = 11;             // places of a kink inside a variable's range
 constexpr double kLongestPulse = 0.5;  // of the run
 constexpr Index kShortRun = 80;
@@ -21,7 +22,7 @@ constexpr double kMostBells = 120.0;                      // of one width
 constexpr double kRowsPerSquare = 6.0, kSquareRatio = 1.08;
 constexpr int kSquarePhases = 8;  // of half a period
 
-/// `others`: what the field's coefficient may depend on beside the temperature.
+/// `others`: what the field's coefficient may depend on beside the temperature and its rate.
 void add_field_shadows(LibraryBuilder& builder, const MovingSignal& h,
                        const std::vector<MovingSignal>& others) {
   const VectorXd u = h.value / kFieldUnitUt;
@@ -39,7 +40,10 @@ void add_field_shadows(LibraryBuilder& builder, const MovingSignal& h,
   builder.add_shadow("direction of the sweep x " + h.name + "^3",
                      going.cwiseProduct(u.array().cube().matrix()));
   for (const MovingSignal& other : others) {
-    builder.add_shadow(h.name + " x " + other.name, u.cwiseProduct(other.value));
+    // A product of the catalogue is no shape from outside.
+    if (other.name != kTemperatureRate) {
+      builder.add_shadow(h.name + " x " + other.name, u.cwiseProduct(other.value));
+    }
     builder.add_shadow(h.name + "^2 x " + other.name, u.cwiseAbs2().cwiseProduct(other.value));
   }
   Candidate wave{.name = "sine of " + h.name};
@@ -153,10 +157,9 @@ void add_shadows(LibraryBuilder& builder) {
   const auto excited = [&](std::string_view name) {
     return moving_signal(signals, name, least_excitation(name));
   };
-  const auto rate = excited("temperature_rate_c_per_h");
+  const auto rate = excited(kTemperatureRate);
   std::vector<MovingSignal> modulating;
-  for (const char* name :
-       {"temperature_rate_c_per_h", "temperature_gradient_c", "time_since_start_s"}) {
+  for (const char* name : {kTemperatureRate, "temperature_gradient_c", "time_since_start_s"}) {
     if (auto other = excited(name)) modulating.push_back(std::move(*other));
   }
   for (const char* axis : {"field_x_ut", "field_y_ut", "field_z_ut"}) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "model/compare.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 #include "model/signals.hpp"
 #include "model/table.hpp"
 

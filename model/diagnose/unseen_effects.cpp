@@ -106,7 +106,7 @@ std::vector<NextMeasurement> experiments_for_unseen(const NextMeasurementInput& 
   for (const NotTestable& entry : input.not_testable) {
     const Effect* effect = find_effect(entry.effect);
     if (effect == nullptr || !signals.missing_for(effect->info()).empty()) continue;
-    (is_elementary(entry.effect) ? effects : others).push_back(effect);
+    (effect->info().elementary_in.empty() ? others : effects).push_back(effect);
   }
   MatrixXd shown(static_cast<Index>(experiments.size()),
                  static_cast<Index>(effects.size() + others.size()));

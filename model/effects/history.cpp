@@ -29,6 +29,10 @@ constexpr double kLeastGap_s = 10.0;
 /// nearly a mean of its neighbours.
 constexpr std::array<double, 2> kBeginnings = {-1.0, 1.0};
 
+/// Elementary loops of a relaxing one, in widths, up to where exp(-width) no longer counts.
+constexpr int kLoops = 12;
+constexpr double kWidestLoop = 4.0;
+
 /// First rows after a gap that is longer than usual; none where that is not known.
 std::vector<std::size_t> rows_after_gaps(const Signals& signals) {
   if (!signals.available("time_s")) return {};
@@ -185,6 +189,45 @@ Eigen::VectorXd lag(const Signals& signals, const Eigen::VectorXd& u, double tau
     }
   }
   return result;
+}
+
+Eigen::VectorXd relaxing_loop(const Signals& signals, const Eigen::VectorXd& u, double width) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(u.size());
+  double weights = 0.0;
+  for (int k = 0; k < kLoops; ++k) {
+    const double relative = (k + 0.5) * kWidestLoop / kLoops;
+    const double weight = std::exp(-relative);
+    weights += weight;
+    for (const Signals::RunRange& run : signals.runs()) {
+      double state = u[static_cast<Eigen::Index>(run.begin)];
+      for (std::size_t i = run.begin; i < run.end; ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        state = std::min(std::max(state, u[row] - relative * width), u[row] + relative * width);
+        out[row] += weight * state;
+      }
+    }
+  }
+  return out / weights;
+}
+
+Eigen::VectorXd path_lag(const Signals& signals, const Eigen::VectorXd& u, double width) {
+  Eigen::VectorXd out(u.size());
+  for (const Signals::RunRange& run : signals.runs()) {
+    double m = u[static_cast<Eigen::Index>(run.begin)], before = m;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      // Exact for a u that moves evenly from the one row to the next.
+      const double step = u[row] - before;
+      const double way = std::abs(step) / width;
+      if (way > 0.0) {
+        const double behind = step / way;
+        m = u[row] - behind + (m - before + behind) * std::exp(-way);
+      }
+      before = u[row];
+      out[row] = m;
+    }
+  }
+  return out;
 }
 
 }  // namespace fogbench::model::effects

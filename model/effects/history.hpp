@@ -22,6 +22,13 @@ Eigen::VectorXd play(const Signals& signals, const Eigen::VectorXd& u, double wi
 /// two places between them. Zero from the first full traverse on.
 Eigen::MatrixXd play_starts(const Signals& signals, const Eigen::VectorXd& u, double width);
 
+/// A loop that relaxes exponentially with the way that u has gone since its reversal: a sum of play
+/// operators with exponentially distributed widths (Prandtl-Ishlinskii). It starts where u starts.
+Eigen::VectorXd relaxing_loop(const Signals& signals, const Eigen::VectorXd& u, double width);
+/// A magnetisation that relaxes towards the field with the way that the field has gone:
+/// dm = (u - m) |du| / width. In a steady sweep it cannot be told from a lag in time.
+Eigen::VectorXd path_lag(const Signals& signals, const Eigen::VectorXd& u, double width);
+
 /// What u does in the gap between one averaging window's end and the next one's beginning.
 enum class Gap {
   kLinear,   ///< moves evenly from the one mean to the next (temperatures)

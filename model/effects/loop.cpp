@@ -45,20 +45,17 @@ constexpr LoopInput kLoopInputs[] = {
 class Loop final : public Effect {
  public:
   Loop(const LoopInput& input, bool saturates, std::size_t parts)
-      : input_(input),
-        saturates_(saturates),
-        parts_(parts),
-        id_(fmt::format("{}({})", saturates ? input.saturating : input.loop, parts)),
-        formula_(fmt::format(
-            "density of {}, r = 0 ... width",
-            fmt::format(fmt::runtime(saturates ? "hs tanh(play_r({}) / hs)" : "play_r({})"),
-                        input.symbol))) {
-    for (std::size_t k = 1; k <= parts; ++k) names_.push_back(parts > 1 ? std::to_string(k) : "");
-    info_.id = id_;
-    info_.formula = formula_;
-    info_.columns.assign(names_.begin(), names_.end());
-    info_.units.assign(parts, input.unit);
-    info_.signals = {input.signal};
+      : input_(input), saturates_(saturates), parts_(parts) {
+    info_.id = fmt::format("{}({})", saturates ? input.saturating : input.loop, parts);
+    info_.formula =
+        fmt::format("density of {}, r = 0 ... width",
+                    fmt::format(fmt::runtime(saturates ? "hs tanh(play_r({}) / hs)" : "play_r({})"),
+                                input.symbol));
+    for (std::size_t k = 1; k <= parts; ++k) {
+      info_.columns.push_back(parts > 1 ? std::to_string(k) : "");
+    }
+    info_.units.assign(parts, std::string(input.unit));
+    info_.signals = {std::string(input.signal)};
     info_.parameters = {input.width};
     if (saturates) info_.parameters.push_back(kFieldScale);
     info_.excited_by = "up and down branches, and smaller loops within the largest";
@@ -69,6 +66,7 @@ class Loop final : public Effect {
   }
 
   const EffectInfo& info() const override { return info_; }
+  std::vector<Shape> other_shapes(const Signals&) const override { return {}; }
 
   Eigen::MatrixXd regressor(const Signals& signals, std::span<const double> inner) const override {
     const Eigen::VectorXd u = input_of(signals);
@@ -115,8 +113,6 @@ class Loop final : public Effect {
   const LoopInput& input_;
   bool saturates_;
   std::size_t parts_;
-  std::string id_, formula_;
-  std::vector<std::string> names_;
   EffectInfo info_;
 };
 

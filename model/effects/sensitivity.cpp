@@ -48,17 +48,15 @@ std::string unit_for(const SensitivityForm& form, std::string_view column) {
 class Sensitivity final : public Effect {
  public:
   Sensitivity(const SensitivityForm& form, std::string column)
-      : form_(form), column_(std::move(column)), id_(sensitivity_of(form, column_)) {
-    formula_ = form.formula;
-    const std::size_t x = formula_.starts_with("LPF") ? 4 : formula_.starts_with("dx") ? 1 : 0;
-    formula_.replace(x, 1, column_);
-    unit_ = unit_for(form, column_);
-    info_.id = id_;
-    info_.formula = formula_;
+      : form_(form), column_(std::move(column)) {
+    info_.id = sensitivity_of(form, column_);
+    info_.formula = form.formula;
+    const std::size_t x = form.formula.starts_with("LPF") ? 4 : form.formula.starts_with("dx");
+    info_.formula.replace(x, 1, column_);
     info_.columns = {""};
-    info_.units = {unit_};
+    info_.units = {unit_for(form, column_)};
     info_.signals = {column_};
-    if (!form.with.empty()) info_.signals.push_back(form.with);
+    if (!form.with.empty()) info_.signals.emplace_back(form.with);
     if (is_lagged(form)) info_.parameters = {kTau};
     info_.excited_by = "changes of the column";
     info_.confused_with = "whatever else changes with the column";
@@ -72,6 +70,7 @@ class Sensitivity final : public Effect {
     return sensitivity_values(form_, signals, signals.signal(column_),
                               inner.empty() ? 0.0 : inner[0]);
   }
+  std::vector<Shape> other_shapes(const Signals&) const override { return {}; }
   Eigen::MatrixXd starts(const Signals& signals, std::span<const double> inner) const override {
     return sensitivity_starts(form_, signals, signals.signal(column_),
                               inner.empty() ? 0.0 : inner[0]);
@@ -79,7 +78,7 @@ class Sensitivity final : public Effect {
 
  private:
   const SensitivityForm& form_;
-  std::string column_, id_, formula_, unit_;
+  std::string column_;
   EffectInfo info_;
 };
 

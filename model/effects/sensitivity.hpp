@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 
 namespace fogbench::model::effects {
 

@@ -47,6 +47,8 @@ struct EffectEntry {
   std::vector<EffectParameter> parameters;
   /// `inner` in the order of `parameters`.
   std::function<Regressor(std::span<const double> inner)> make;
+  /// Through the shield: it scales with the shield's state (a scenario's magnetic_scale).
+  bool through_shield = false;
 };
 
 // One function per family, each in a file of its own.

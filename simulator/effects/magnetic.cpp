@@ -12,7 +12,8 @@ namespace {
 void add_axis(std::vector<EffectEntry>& entries, const std::string& axis, std::size_t i) {
   const auto add = [&](const std::string& family, std::vector<EffectParameter> parameters,
                        std::function<Regressor(std::span<const double>)> make) {
-    entries.push_back({"magnetic_" + family + "_" + axis, std::move(parameters), std::move(make)});
+    entries.push_back(
+        {"magnetic_" + family + "_" + axis, std::move(parameters), std::move(make), true});
   };
   add("linear", {}, [i](auto) { return [i](const TrueState& s) { return s.field_100ut[i]; }; });
   add("quadratic", {}, [i](auto) {
@@ -37,6 +38,9 @@ void add_axis(std::vector<EffectEntry>& entries, const std::string& axis, std::s
   add("temperature", {}, [i](auto) {
     return [i](const TrueState& s) { return s.field_100ut[i] * s.above_reference_c(); };
   });
+  add("temperature_rate", {}, [i](auto) {
+    return [i](const TrueState& s) { return s.field_100ut[i] * s.temperature_rate_c_per_h; };
+  });
 }
 
 }  // namespace
@@ -46,11 +50,14 @@ void add_magnetic_effects(std::vector<EffectEntry>& entries) {
   for (std::size_t i = 0; i < 3; ++i) {
     add_axis(entries, axes.substr(i, 1), i);
     const std::size_t j = (i + 1) % 3;
-    entries.push_back({std::string("magnetic_cross_") + axes[i] + axes[j], {}, [i, j](auto) {
+    entries.push_back({std::string("magnetic_cross_") + axes[i] + axes[j],
+                       {},
+                       [i, j](auto) {
                          return [i, j](const TrueState& s) {
                            return s.field_100ut[i] * s.field_100ut[j];
                          };
-                       }});
+                       },
+                       true});
   }
 }
 

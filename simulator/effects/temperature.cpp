@@ -23,6 +23,14 @@ void add_temperature_effects(std::vector<EffectEntry>& entries) {
       [](const TrueState& s) { return s.above_reference_c() * s.temperature_rate_c_per_h; });
   add("temperature_gradient", [](const TrueState& s) { return s.temperature_gradient_c; });
 
+  // The change since the step before; at power-on there was no difference.
+  entries.push_back({"temperature_gradient_rate", {}, [](auto) {
+                       return [before = 0.0](const TrueState& s) mutable {
+                         const double change = s.temperature_gradient_c - before;
+                         before = s.temperature_gradient_c;
+                         return change / s.step_s * 3600.0;
+                       };
+                     }});
   entries.push_back({"temperature_rate_lagged", {{"tau"}}, [](auto inner) {
                        return [lag = Lag(inner[0], 0.0)](const TrueState& s) mutable {
                          return lag.follow(s.temperature_rate_c_per_h, s.step_s);

@@ -52,6 +52,10 @@ TEST(Architecture, OnlyTheRunEngineCommandsDevices) {
   EXPECT_THAT(commands_outside_the_engine(tree()), IsEmpty());
 }
 
+TEST(Architecture, NoEffectIsKnownByItsName) {
+  EXPECT_THAT(effects_known_by_name(tree()), IsEmpty());
+}
+
 TEST(Architecture, NobodyThrows) {
   EXPECT_THAT(thrown_exceptions(tree()), IsEmpty());
 }

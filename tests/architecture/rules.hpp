@@ -48,6 +48,9 @@ Violations thrown_exceptions(const Tree& tree);
 /// its name with no other such function there, nor with one that any room's header declares. A type
 /// of the project tells overloads apart.
 Violations shared_helper_names(const Tree& tree);
+/// What is known of an effect stands in its own file: nobody else compares, cuts or searches for
+/// the spelling of one's name.
+Violations effects_known_by_name(const Tree& tree);
 /// No file is longer than kMostLines.
 Violations long_files(const Tree& tree);
 /// Nothing is put off, and no test is switched off.

@@ -32,6 +32,16 @@ TEST(ForbiddenIncludes, FindsAPathThatIsNotRooted) {
   EXPECT_THAT(forbidden_includes(tree), ElementsAre(HasSubstr("no such file")));
 }
 
+TEST(EffectsKnownByName, FindsAComparisonAndACutButNoColumn) {
+  const Tree tree{file("model/fit.cpp",
+                       "if (id == \"warm_up\") return;\n"
+                       "if (id.starts_with(\"magnetic_linear_\")) return;\n"
+                       "if (name == \"temperature_rate_c_per_h\") return;\n"),
+                  file("model/effects/loop.cpp", "if (id == \"warm_up\") return;\n")};
+  EXPECT_THAT(effects_known_by_name(tree),
+              ElementsAre(HasSubstr("model/fit.cpp:1"), HasSubstr("model/fit.cpp:2")));
+}
+
 TEST(ForbiddenIncludes, AllowsTheArrowsTheOwnRoomAndTests) {
   const Tree tree{file("drivers/a.hpp", "# include \"config/units.hpp\"\n"),
                   file("config/units.hpp", "#include <string>\n"),

@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 #include "model/noise.hpp"
 #include "tests/benchmark/candidate_columns.hpp"
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "config/model_file.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 
 namespace fogbench::cli {
 namespace {

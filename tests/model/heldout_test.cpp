@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

@@ -11,7 +11,7 @@
 
 #include "model/diagnose/bench_schedule.hpp"
 #include "model/diagnose/separation.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

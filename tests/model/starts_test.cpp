@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "model/compensate.hpp"
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 #include "model/fit.hpp"
 #include "tests/model/cut_out_chamber.hpp"
 

@@ -154,6 +154,7 @@ TEST(Effects, AreAllOfThePublishedCatalogueOnceEach) {
                                     "temperature_acceleration",
                                     "temperature_rate_cross",
                                     "temperature_gradient",
+                                    "temperature_gradient_rate",
                                     "temperature_hysteresis",
                                     "temperature_ripple",
                                     "heater_power",
@@ -163,8 +164,8 @@ TEST(Effects, AreAllOfThePublishedCatalogueOnceEach) {
                                     "magnetic_cross_zx",
                                     "coil_heating",
                                     "earth_rate_projection"};
-  for (const char* family :
-       {"linear", "quadratic", "saturation", "hysteresis", "settling", "temperature"}) {
+  for (const char* family : {"linear", "quadratic", "saturation", "hysteresis", "settling",
+                             "temperature", "temperature_rate"}) {
     for (const char axis : {'x', 'y', 'z'}) {
       expected.insert(std::string("magnetic_") + family + "_" + axis);
     }

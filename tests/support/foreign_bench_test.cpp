@@ -9,7 +9,7 @@
 #include <cmath>
 #include <set>
 
-#include "model/effect.hpp"
+#include "model/effects/effect.hpp"
 
 namespace fogbench::tests {
 namespace {

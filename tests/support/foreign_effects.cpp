@@ -119,6 +119,11 @@ void add_thermal(std::map<std::string, Recipe>& all) {
     return excess(w, i) * w.rate_c_per_h[i];
   });
   all["temperature_gradient"] = [](const World& w, const ForeignEffect&) { return w.gradient_c; };
+  all["temperature_gradient_rate"] =
+      instant([](const World& w, const ForeignEffect&, std::size_t i) {
+        const double before = i > 0 ? w.gradient_c[i - 1] : 0.0;
+        return (w.gradient_c[i] - before) * 3600.0 / kGridStep;
+      });
   all["temperature_hysteresis"] = [](const World& w, const ForeignEffect& e) {
     const Series t = mapped(w.size(), [&](std::size_t i) { return excess(w, i); });
     if (!other(e)) return play(t, e.inner);
@@ -186,6 +191,10 @@ void add_magnetic(std::map<std::string, Recipe>& all) {
     all["magnetic_temperature" + end] =
         instant([=](const World& w, const ForeignEffect&, std::size_t i) {
           return field(w, axis, i) * excess(w, i);
+        });
+    all["magnetic_temperature_rate" + end] =
+        instant([=](const World& w, const ForeignEffect&, std::size_t i) {
+          return field(w, axis, i) * w.rate_c_per_h[i];
         });
   }
 }

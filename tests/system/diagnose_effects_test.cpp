@@ -45,6 +45,7 @@ struct HiddenCase {
   std::string because;
   /// Share of the coefficient that the columns lose, beside what the noise makes uncertain.
   double lost = 0.0;
+  Numbers plant = {};  ///< of the simulated bench's thermal plant, where not as it stands
 };
 
 void PrintTo(const HiddenCase& hidden, std::ostream* out) {
@@ -94,6 +95,16 @@ void add_magnetic_cases(std::vector<HiddenCase>& all, const std::string& axis) {
                  {"second-temperature", "--set",
                   "levels_ut=0,100,200,300,200,100,0,-100,-200,-300,"
                   "-200,-100,0"}});
+  all.push_back({"magnetic_temperature_rate_" + axis,
+                 0.001,
+                 {},
+                 {{"bias", 0.7},
+                  {"temperature_linear", -0.117},
+                  {"temperature_rate", 0.01},
+                  {"magnetic_linear_x", -0.2},
+                  {"magnetic_linear_y", 0.1},
+                  {"magnetic_linear_z", -0.25}},
+                 {"field-on-ramp"}});
 }
 
 void add_thermal_cases(std::vector<HiddenCase>& all) {
@@ -110,17 +121,28 @@ void add_thermal_cases(std::vector<HiddenCase>& all) {
   all.push_back({"temperature_rate_lagged", 0.02, {{"tau", 600}}, kThermal, steps});
   all.push_back({"temperature_rate_cross", 0.001, {}, kThermal, steps});
   // The edges of quick steps in windows of 10 s: in windows of 60 s they are gone, and even these
-  // round them: 13 % of the coefficient was lost in this run.
-  all.push_back({"temperature_acceleration",
-                 5e-5,
+  // round them: 13 % of the acceleration's coefficient was lost in this run.
+  const std::vector<std::string> edges = {"thermostat-steps",
+                                          "--set",
+                                          "set_points_c=31,38,45,52",
+                                          "--set",
+                                          "transient_s=10",
+                                          "--set",
+                                          "warm_up_s=0",
+                                          "--set",
+                                          "dwell_s=60"};
+  all.push_back({"temperature_acceleration", 5e-5, {}, kThermal, edges, 1, {}, {}, 0.15});
+  // Where the heaters switch the rate jumps, and windows of 60 s round that.
+  all.push_back({"temperature_gradient_rate",
+                 0.006,
                  {},
                  kThermal,
-                 {"thermostat-steps", "--set", "set_points_c=31,38,45,52", "--set",
-                  "transient_s=10", "--set", "warm_up_s=0", "--set", "dwell_s=60"},
+                 steps,
                  1,
                  {},
                  {},
-                 0.15});
+                 0.1,
+                 {{"gradient_lag_s", 180.0}}});
   all.push_back({"temperature_gradient", 1.0, {}, kThermal, steps});
   all.push_back({"temperature_hysteresis", 0.05, {{"width", 3}}, kThermal, cooling});
   all.push_back({"temperature_ripple",
@@ -186,6 +208,9 @@ class HiddenEffectTest : public FogbenchTest, public testing::WithParamInterface
     bench["gyro"]["max_gap_s"] = 1;
     bench["thermostat"]["sensor_lag_s"] = 0;
     bench["simulation"]["thermal"]["sensor_lag_s"] = 0;
+    for (const auto& [name, value] : GetParam().plant) {
+      bench["simulation"]["thermal"][name] = value;
+    }
     return write("bench.json", bench);
   }
   std::string scenario() const {
