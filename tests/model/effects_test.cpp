@@ -114,6 +114,10 @@ TEST(Effects, AccelerationIsTheSlopeOfTheRate) {
               near({360 * 36, 360 * 18, -540 * 18, -720 * 18, -180 * 36}, 1e-8));
 }
 
+TEST(Effects, TheGradientsRateIsItsSlope) {
+  EXPECT_THAT(regressor("temperature_gradient_rate"), near({3.6, 3.6, 3.6, 3.6, 3.6}, 1e-9));
+}
+
 TEST(Effects, MagneticEffects) {
   EXPECT_THAT(regressor("magnetic_linear_x"), near({0, 1, 2, 1, -1}));
   EXPECT_THAT(regressor("magnetic_linear_y"), near({0.5, 0, 0.5, 0, 0.5}));
@@ -126,6 +130,7 @@ TEST(Effects, MagneticEffects) {
   // Play of half-width 0.5 on 0, 1, 2, 1, -1 from 0.
   EXPECT_THAT(regressor("magnetic_hysteresis_x", {0.5}), near({0, 0.5, 1.5, 1.5, -0.5}));
   EXPECT_THAT(regressor("magnetic_temperature_x"), near({0, 10, 40, 15, -5}));
+  EXPECT_THAT(regressor("magnetic_temperature_rate_x"), near({0, 360, 720, -180, 360}));
 }
 
 TEST(Effects, SettlingIsAStepsExponentialAveragedOverTheWindows) {

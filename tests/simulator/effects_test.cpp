@@ -71,6 +71,18 @@ TEST(Effects, WithoutMemoryAreWhatTheirFormulasSay) {
   EXPECT_DOUBLE_EQ(Effect("magnetic_temperature_x")(s), 5.0);
   EXPECT_DOUBLE_EQ(Effect("magnetic_temperature_y")(s), -20.0);
   EXPECT_DOUBLE_EQ(Effect("magnetic_temperature_z")(s), 30.0);
+  EXPECT_DOUBLE_EQ(Effect("magnetic_temperature_rate_x")(s), 3.0);
+  EXPECT_DOUBLE_EQ(Effect("magnetic_temperature_rate_y")(s), -12.0);
+  EXPECT_DOUBLE_EQ(Effect("magnetic_temperature_rate_z")(s), 18.0);
+}
+
+TEST(Effects, TheGradientsRateIsItsChangeSinceTheStepBefore) {
+  Effect rate("temperature_gradient_rate");
+  TrueState s = state_at(0.1);
+  EXPECT_NEAR(rate(s), 0.4 / 0.1 * 3600.0, 1e-9);
+  EXPECT_EQ(rate(s), 0.0);
+  s.temperature_gradient_c = 0.3;
+  EXPECT_NEAR(rate(s), -0.1 / 0.1 * 3600.0, 1e-9);
 }
 
 TEST(Effects, BiasStepBeginsAtItsTime) {

@@ -85,6 +85,16 @@ TEST(ThermalPhysics, BoostHeatersMakeAGradientAndTheRoomWanders) {
   EXPECT_NEAR(thermal.ambient_c(), 21.3, 1e-9);
 }
 
+TEST(ThermalPhysics, TheGradientLagsWhereThePlantSaysSo) {
+  config::ThermalPlant plant = quiet_plant();
+  plant.gradient_lag = config::Seconds{100.0};
+  plant.dead_time = config::Seconds{0.0};
+  ThermalPhysics thermal(plant, 0.1);
+  for (int i = 0; i < 1000; ++i) thermal.advance({12.0, 0.0});
+  const double settled_c = 12.0 * plant.gradient_c_per_w;
+  EXPECT_NEAR(thermal.gradient_c(), settled_c * (1.0 - std::exp(-1.0)), 1e-9);
+}
+
 /// Runs the controlled plant and looks at it once a step.
 class ThermostatLoop : public ::testing::Test {
  protected:

@@ -293,6 +293,42 @@ TEST_P(HiddenEffectTest, IsFoundNamedAddedAndLeavesTheNoise) {
 INSTANTIATE_TEST_SUITE_P(Catalogue, HiddenEffectTest, testing::ValuesIn(all_cases()),
                          [](const auto& tested) { return tested.param.effect; });
 
+// Peaks of a few samples, in windows whose own scatter is as large: no column of the catalogue has
+// them, but eight windows of one range are far off.
+TEST_F(FogbenchTest, WhatAComparisonMissesADiagnosisDoesNotCallNoise) {
+  const auto write = [&](const std::string& name, const Json& document) {
+    const std::string path = (folder_ / name).string();
+    std::ofstream(path) << document;
+    return path;
+  };
+  const Json peaks = {{"effect", "temperature_gradient_rate"}, {"amplitude", 0.01}};
+  const std::string scenario = write("peaks.json", {{"name", "peaks"},
+                                                    {"noise", "navigation"},
+                                                    {"reference_temperature_c", 21},
+                                                    {"gyro", {{"terms", kThermal}}},
+                                                    {"hidden", Json::array({peaks})}});
+  Json terms = Json::array();
+  for (const auto& [effect, coefficient] : kThermal) terms.push_back({{"effect", effect}});
+  const std::string model =
+      write("model.json", {{"name", "thermal"}, {"reference_temperature_c", 21}, {"terms", terms}});
+  const auto measured =
+      support::run(dry_run({"thermostat-steps", "--set", "set_points_c=31,38,45,52", "--set",
+                            "transient_s=10", "--set", "warm_up_s=0", "--set", "dwell_s=60"},
+                           {"--scenario", scenario, "--seed", "1"}));
+  ASSERT_EQ(measured.status, 0) << measured.err;
+  const std::vector<std::string> data{"1", "--store", store(), "--model", model, "--json"};
+  const auto asked = [&](const std::string& what) {
+    std::vector<std::string> arguments = data;
+    arguments.insert(arguments.begin(), what);
+    return json(arguments);
+  };
+  ASSERT_FALSE(asked("compare").at("adequate").get<bool>());
+  const Json diagnosis = asked("diagnose");
+  EXPECT_EQ(diagnosis.at("verdict"), "unexplained") << diagnosis.at("sentences").dump(1);
+  EXPECT_LT(diagnosis.at("p_adequate").get<double>(), 0.05);
+  EXPECT_EQ(diagnosis.at("unexplained").at("depends_on").at(0), "temperature_gradient_c");
+}
+
 TEST_F(FogbenchTest, EveryEffectOfTheCatalogueHidesOnce) {
   std::multiset<std::string> hidden{"bias"};  // every model has one
   for (const HiddenCase& c : all_cases()) hidden.insert(c.effect);
