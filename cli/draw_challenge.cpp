@@ -30,6 +30,9 @@ std::vector<Kind> kinds(bool swept, bool heated) {
     }
     out.back().push_back(&info);
   }
+  std::sort(out.begin(), out.end(), [](const Kind& a, const Kind& b) {
+    return a.front()->in_challenge->place < b.front()->in_challenge->place;
+  });
   return out;
 }
 
@@ -114,7 +117,8 @@ ChallengeDraw draw_challenge(std::uint64_t seed) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t chosen = draw.index(possible.size());
     const Kind& kind = possible[chosen];
-    out.scenario.hidden.push_back(draw.effect(*kind[draw.index(kind.size())]));
+    const std::size_t axis = kind.size() > 1 ? draw.index(kind.size()) : 0;
+    out.scenario.hidden.push_back(draw.effect(*kind[axis]));
     out.visibility.push_back(draw.logarithmic(3.0, 8.0));
     possible.erase(possible.begin() + static_cast<std::ptrdiff_t>(chosen));
   }

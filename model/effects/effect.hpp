@@ -39,6 +39,7 @@ struct InChallenge {
     double minimum, maximum;
   };
   By by;
+  int place;  ///< among those that are drawn: a seed means the same whatever the catalogue's order
   /// Of the simulator's inner parameters: inside the typical range, and where the procedure can
   /// tell them.
   std::map<std::string, Range> ranges = {};

@@ -26,7 +26,7 @@ Family bias_step() {
                .confused_with = "earth_rate_projection, where the jump falls on a rotation",
                .source = "bench experience",
                .slow = true,
-               .in_challenge = InChallenge{InChallenge::By::kBoth, {{"t0", {3000.0, 8000.0}}}}},
+               .in_challenge = InChallenge{InChallenge::By::kBoth, 13, {{"t0", {3000.0, 8000.0}}}}},
       .regressor = [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         const Signals::View time = signals.signal("time_s");
         const Signals::View duration = signals.signal("duration_s");

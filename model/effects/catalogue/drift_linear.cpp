@@ -16,7 +16,7 @@ Family drift_linear() {
                .confused_with = "warm_up with a long tau; random walk",
                .source = "IEEE Std 952, rate ramp",
                .slow = true,
-               .in_challenge = InChallenge{InChallenge::By::kBoth}},
+               .in_challenge = InChallenge{InChallenge::By::kBoth, 14}},
       .regressor = [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
         return signals.signal("time_since_start_s") / 3600.0;
       },

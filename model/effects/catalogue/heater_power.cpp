@@ -15,7 +15,7 @@ Family heater_power() {
                .excited_by = "switching the heater at constant temperature",
                .confused_with = "temperature_linear: the duty follows t",
                .source = "bench experience: field and gradient of the heater",
-               .in_challenge = InChallenge{InChallenge::By::kHeating}},
+               .in_challenge = InChallenge{InChallenge::By::kHeating, 12}},
       .regressor = [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
         return signals.signal("heater_w");
       },

@@ -24,7 +24,7 @@ Family magnetic_hysteresis() {
              .limit = axis.of("magnetic_linear"),
              .hidden_because = axis.needs_three_levels(),
              // Narrower ones look like a settling where a level has one window.
-             .in_challenge = InChallenge{InChallenge::By::kSweep, {{"width", {0.6, 1.5}}}}},
+             .in_challenge = InChallenge{InChallenge::By::kSweep, 3, {{"width", {0.6, 1.5}}}}},
         .regressor = [axis](const Signals& signals, std::span<const double> inner)
             -> Eigen::MatrixXd { return play(signals, axis.field(signals), inner[0]); },
         .starts = [axis](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {

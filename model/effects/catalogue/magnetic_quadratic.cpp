@@ -17,7 +17,7 @@ Family magnetic_quadratic() {
                  .source = "second term of the expansion in the field",
                  .elementary_in = axis.signal,
                  .hidden_because = axis.needs_three_levels(),
-                 .in_challenge = InChallenge{InChallenge::By::kSweep}},
+                 .in_challenge = InChallenge{InChallenge::By::kSweep, 1}},
         .regressor = [axis](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
           return axis.field(signals).square();
         },

@@ -19,7 +19,7 @@ Family magnetic_saturation() {
                  .source = "a magnetisation curve's usual approximation",
                  .limit = axis.of("magnetic_linear"),
                  .hidden_because = axis.needs_three_levels(),
-                 .in_challenge = InChallenge{InChallenge::By::kSweep, {{"hs", {0.7, 2.0}}}}},
+                 .in_challenge = InChallenge{InChallenge::By::kSweep, 2, {{"hs", {0.7, 2.0}}}}},
         .regressor = [axis](const Signals& signals, std::span<const double> inner)
             -> Eigen::MatrixXd { return (axis.field(signals) / inner[0]).tanh(); },
         .other_shapes = [axis](const Effect&, const Signals& signals) -> std::vector<Shape> {

@@ -16,7 +16,7 @@ Family temperature_gradient() {
                .confused_with = "temperature_rate; heater_power",
                .source = "D. M. Shupe, Applied Optics 19 (1980) 654",
                .elementary_in = "temperature_gradient_c",
-               .in_challenge = InChallenge{InChallenge::By::kHeating}},
+               .in_challenge = InChallenge{InChallenge::By::kHeating, 9}},
       .regressor = [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
         return signals.signal("temperature_gradient_c");
       },

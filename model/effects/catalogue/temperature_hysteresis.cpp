@@ -52,7 +52,7 @@ Family temperature_hysteresis() {
                .has_history = true,
                .limit = "temperature_linear",
                .hidden_because = never_cooled,
-               .in_challenge = InChallenge{InChallenge::By::kHeating, {{"width", {3.0, 8.0}}}}},
+               .in_challenge = InChallenge{InChallenge::By::kHeating, 10, {{"width", {3.0, 8.0}}}}},
       .regressor = [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         return play(signals, excess_temperature(signals), inner[0]);
       },

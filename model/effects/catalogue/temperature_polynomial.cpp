@@ -10,7 +10,6 @@ constexpr const char* kPolynomial = "The acceptance procedure: polynomial of the
 }  // namespace
 
 Family temperature_polynomial() {
-  const InChallenge heated{InChallenge::By::kHeating};
   return {
       {.info = {.id = "temperature_linear",
                 .group = EffectInfo::Group::kTemperature,
@@ -36,7 +35,7 @@ Family temperature_polynomial() {
                 .confused_with = "temperature_linear over a short range",
                 .source = kPolynomial,
                 .elementary_in = "temperature_c",
-                .in_challenge = heated},
+                .in_challenge = InChallenge{InChallenge::By::kHeating, 4}},
        .regressor = [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
          return excess_temperature(signals).square();
        }},
@@ -49,7 +48,7 @@ Family temperature_polynomial() {
                 .excited_by = "plateaus at four temperatures or more",
                 .confused_with = "temperature_linear, temperature_quadratic over a short range",
                 .source = kPolynomial,
-                .in_challenge = heated},
+                .in_challenge = InChallenge{InChallenge::By::kHeating, 5}},
        .regressor = [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
          return excess_temperature(signals).cube();
        }},

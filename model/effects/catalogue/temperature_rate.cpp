@@ -33,7 +33,7 @@ Family temperature_rate() {
                .source = "D. M. Shupe, Applied Optics 19 (1980) 654",
                .like_a_late_thermometer = true,
                .elementary_in = "temperature_rate_c_per_h",
-               .in_challenge = InChallenge{InChallenge::By::kHeating}},
+               .in_challenge = InChallenge{InChallenge::By::kHeating, 6}},
       .regressor = [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
         return signals.signal("temperature_rate_c_per_h");
       },

@@ -18,7 +18,7 @@ Family temperature_rate_cross() {
                .source = "D. M. Shupe, Applied Optics 19 (1980) 654, with temperature-dependent "
                          "fibre data",
                .elementary_in = "temperature_rate_c_per_h",
-               .in_challenge = InChallenge{InChallenge::By::kHeating}},
+               .in_challenge = InChallenge{InChallenge::By::kHeating, 8}},
       .regressor = [](const Signals& signals, std::span<const double>) -> Eigen::MatrixXd {
         return excess_temperature(signals) * signals.signal("temperature_rate_c_per_h").array();
       },

@@ -21,7 +21,8 @@ Family temperature_rate_lagged() {
                          "the winding",
                .has_history = true,
                .limit = "temperature_rate",
-               .in_challenge = InChallenge{InChallenge::By::kHeating, {{"tau", {200.0, 1200.0}}}}},
+               .in_challenge =
+                   InChallenge{InChallenge::By::kHeating, 7, {{"tau", {200.0, 1200.0}}}}},
       .regressor = [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         return lagged_rate(signals, inner[0]);
       },

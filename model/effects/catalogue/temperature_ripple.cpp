@@ -40,6 +40,7 @@ Family temperature_ripple() {
                          "interferometers",
                .hidden_because = too_few_temperatures,
                .in_challenge = InChallenge{InChallenge::By::kHeating,
+                                           11,
                                            {{"period", {4.0, 10.0}}, {"phase_deg", {0.0, 360.0}}}}},
       .regressor = [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         const Eigen::ArrayXd angle =

@@ -20,7 +20,7 @@ Family warm_up() {
                .confused_with = "temperature_rate; drift_linear with a long tau",
                .source = "bench experience: electronics and light source warming up",
                .slow = true,
-               .in_challenge = InChallenge{InChallenge::By::kBoth, {{"tau", {900.0, 3600.0}}}}},
+               .in_challenge = InChallenge{InChallenge::By::kBoth, 15, {{"tau", {900.0, 3600.0}}}}},
       .regressor = [](const Signals& signals, std::span<const double> inner) -> Eigen::MatrixXd {
         const Signals::View time = signals.signal("time_since_power_on_s");
         const Signals::View duration = signals.signal("duration_s");
