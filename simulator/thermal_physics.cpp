@@ -51,8 +51,8 @@ void ThermalPhysics::advance(const HeaterPower& power) {
   carrier_rate_c_per_h_ = rate;
   const double settled_c = plant_.gradient_c_per_w * arriving.boost_w;
   const double lag_s = plant_.gradient_lag.count();
-  gradient_c_ = lag_s > 0.0 ? settled_c + (gradient_c_ - settled_c) * std::exp(-step_s_ / lag_s)
-                            : settled_c;
+  gradient_c_ =
+      lag_s > 0.0 ? settled_c + (gradient_c_ - settled_c) * std::exp(-step_s_ / lag_s) : settled_c;
 }
 
 }  // namespace fogbench::simulator

@@ -192,7 +192,8 @@ class Work {
   /// Where rows left out pay for more than one play, searches again with that form of the loop in
   /// the play's place, and keeps what is found where it pays there too. Once more when something
   /// is found beside the loop, which its form was chosen without.
-  /// A search that found one effect in one shape, and nothing beside it, has seen no such loop.
+  /// A search that found one effect in one shape, and nothing beside it or in its place, has seen
+  /// no such loop.
   void look_for_loops(LibrarySource source, const NoiseShapes& shapes, const BaseColumns& base,
                       std::unique_ptr<Searched>& searched) {
     if (all_is_said(searched->result)) return;
@@ -224,7 +225,7 @@ class Work {
   bool all_is_said(const SearchResult& result) const {
     return result.refused.empty() && result.outside_shape.empty() && result.found.size() < 2 &&
            std::all_of(result.found.begin(), result.found.end(),
-                       [](const Found& f) { return f.more.empty(); }) &&
+                       [](const Found& f) { return f.more.empty() && f.rivals.empty(); }) &&
            !(d_.ladder.back().heldout_rms > kFarFromFloor * d_.ladder.back().rms);
   }
 

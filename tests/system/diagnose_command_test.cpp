@@ -129,7 +129,8 @@ TEST_F(DiagnoseCommandTest, PublishedSixPointsAreTooFewAndSaidToBe) {
                 "--model", "paper-thermal"});
   EXPECT_EQ(done.status, 0) << done.err;
   EXPECT_EQ(done.out.rfind("Cannot tell whether anything is missing: 6 rows", 0), 0U) << done.out;
-  EXPECT_NE(done.out.find("  the table has no field_x_ut: magnetic_linear_x, "), std::string::npos)
+  EXPECT_NE(done.out.find("  the table has no field_x_ut: magnetic_hysteresis_x, "),
+            std::string::npos)
       << done.out;
 }
 

@@ -63,7 +63,7 @@ TEST_F(ModelCommandsTest, RunIsFittedByItsNumber) {
 }
 
 TEST_F(ModelCommandsTest, EffectsAndAdd) {
-  EXPECT_EQ(json({"effects", "--json"}).at("effects").size(), 39U);
+  EXPECT_EQ(json({"effects", "--json"}).at("effects").size(), 43U);
   const std::string extended = path("extended.json");
   const Finished added =
       fogbench({"add", "magnetic_hysteresis_z", "--model", "magnetic", "-o", extended});
