@@ -12,8 +12,8 @@
 namespace fogbench::model {
 namespace {
 
-/// A search may leave the typical range by this factor before it is stopped, where that gains more
-/// than this of chi squared: 5 % of what noise gains by one parameter.
+/// A search may leave the typical range by this factor before it is stopped, and only where it
+/// gains more of chi squared than noise does by one parameter in 19 of 20 cases.
 constexpr double kBeyondRange = 10.0;
 constexpr double kWorthLeaving = 3.84;
 /// Up to this many rows times parameters, several strategies are tried and the best one is kept.
@@ -163,6 +163,26 @@ Eigen::VectorXd polish(const Observations& observations, Eigen::VectorXd inner, 
   return inner;
 }
 
+Eigen::VectorXd descended(const Observations& observations, const Eigen::VectorXd& from,
+                          const Strategy& strategy, double beyond) {
+  return polish(observations, descend(observations, from, strategy, beyond), beyond);
+}
+
+/// Within the typical ranges, unless a given value lies beyond them.
+double range_to_search(const Observations& observations, const Eigen::VectorXd& start) {
+  return within(observations, start, 1.0) ? 1.0 : kBeyondRange;
+}
+
+/// From a solution within the typical ranges to one beyond them, where that pays.
+Eigen::VectorXd beyond_where_it_pays(const Observations& observations, Eigen::VectorXd inside) {
+  constexpr double kNotAtAnEdge = 0.999;
+  if (within(observations, inside, kNotAtAnEdge)) return inside;
+  const Eigen::VectorXd outside = descended(observations, inside, kStrategies[0], kBeyondRange);
+  const double pays = std::exp(-kWorthLeaving / static_cast<double>(observations.taken().size()));
+  const bool leaves = cost_at(observations, outside) < pays * cost_at(observations, inside);
+  return leaves ? outside : inside;
+}
+
 double grid_point(const InnerParameter& range, int i, int points) {
   const double part = static_cast<double>(i) / (points - 1);
   if (range.logarithmic) {
@@ -201,11 +221,6 @@ Result<InnerSolution> solution_at(const Observations& observations, Eigen::Vecto
   return not_finite_at(observations, inner);
 }
 
-/// What a solution beyond the typical range may cost, in shares of one within it.
-double worth_leaving(const Observations& observations) {
-  return std::exp(-kWorthLeaving / static_cast<double>(observations.taken().size()));
-}
-
 void silence_ceres() {
   static std::once_flag once;
   std::call_once(once, [] { FLAGS_minloglevel = google::GLOG_FATAL; });
@@ -230,17 +245,10 @@ Error not_finite_at(const Observations& observations, const Eigen::VectorXd& inn
 Result<InnerSolution> refine_inner(const Observations& observations, const Eigen::VectorXd& start) {
   if (start.size() == 0) return solution_at(observations, start);
   silence_ceres();
-  const auto descended = [&](const Eigen::VectorXd& from, double beyond) {
-    return polish(observations, descend(observations, from, kStrategies[0], beyond), beyond);
-  };
-  if (!within(observations, start, 1.0)) {
-    return solution_at(observations, descended(start, kBeyondRange));
-  }
-  const Eigen::VectorXd inside = descended(start, 1.0);
-  const Eigen::VectorXd outside = descended(inside, kBeyondRange);
-  const bool leaves =
-      cost_at(observations, outside) < cost_at(observations, inside) * worth_leaving(observations);
-  return solution_at(observations, leaves ? outside : inside);
+  const double beyond = range_to_search(observations, start);
+  return solution_at(
+      observations,
+      beyond_where_it_pays(observations, descended(observations, start, kStrategies[0], beyond)));
 }
 
 Result<InnerSolution> search_inner(const Observations& observations) {
@@ -265,11 +273,10 @@ Result<InnerSolution> search_inner(const Observations& observations) {
   const auto y = start->fit.joint.cols() - 1;
   const double exact = kExact * start->fit.joint.col(y).squaredNorm();
   int agreed = 0;
-  double beyond = within(observations, inner, 1.0) ? 1.0 : kBeyondRange;
+  const double beyond = range_to_search(observations, inner);
   const auto attempt = [&](const Eigen::VectorXd& from, const Strategy& strategy) {
     if (least <= exact || agreed >= kAgreement) return;
-    const Eigen::VectorXd found =
-        polish(observations, descend(observations, from, strategy, beyond), beyond);
+    const Eigen::VectorXd found = descended(observations, from, strategy, beyond);
     const double cost = cost_at(observations, found);
     if (std::abs(cost - least) <= kSameMinimum * least) ++agreed;
     if (!(cost < least * (1.0 - kSameMinimum))) return;
@@ -277,16 +284,8 @@ Result<InnerSolution> search_inner(const Observations& observations) {
     least = cost;
     best = found;
   };
-  // In the end beyond the typical range, where that pays.
   const auto conclude = [&] {
-    if (beyond > 1.0 || within(observations, best, 0.999)) return solution_at(observations, best);
-    beyond = kBeyondRange;
-    agreed = 0;
-    const Eigen::VectorXd inside = best;
-    const double inside_cost = least;
-    attempt(inside, kStrategies[0]);
-    const bool leaves = least < inside_cost * worth_leaving(observations);
-    return solution_at(observations, leaves ? best : inside);
+    return solution_at(observations, beyond_where_it_pays(observations, best));
   };
   attempt(inner, kStrategies[0]);
   if (observations.taken().size() * parameters.size() > kFewEnoughForAll) return conclude();

@@ -19,11 +19,6 @@ constexpr double kDependent = 1e-9;  // of a normalised column: spanned by those
 constexpr double kNothingLeft = 1e-12;
 constexpr Index kNoiseWindows = 24;
 
-bool is_instant(const Effect& effect) {
-  const auto& parameters = effect.info().parameters;
-  return !parameters.empty() && parameters.front().instant;
-}
-
 MatrixXd finite(const MatrixXd& columns) {
   return columns.array().isFinite().select(columns, 0.0);
 }
@@ -39,8 +34,8 @@ std::vector<double> grid_of(const Effect& effect, const Signals& present, int po
   }
   for (int i = 0; i < points; ++i) {
     // Instants lie inside the range: a jump before the first row or after the last is a bias.
-    const double t = is_instant(effect) ? (i + 1.0) / (points + 1.0)
-                                        : static_cast<double>(i) / std::max(points - 1, 1);
+    const double t = effect.info().is_jump() ? (i + 1.0) / (points + 1.0)
+                                             : static_cast<double>(i) / std::max(points - 1, 1);
     const bool logarithmic = parameter.logarithmic && least > 0.0;
     grid.push_back(logarithmic ? least * std::pow(most / least, t) : least + t * (most - least));
   }
@@ -120,7 +115,7 @@ Separation::Separation(const Recorded& present, const config::ModelFile& fitted,
     } else {
       for (const double value : grid_of(*effects[m], signals, grid_points)) add({value});
     }
-    if (is_instant(*effects[m])) {
+    if (effects[m]->info().is_jump()) {
       const std::size_t known = member.blocks.size();
       for (std::size_t i = 0; i < known; ++i) {
         add(member.blocks[i].inner);

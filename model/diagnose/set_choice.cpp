@@ -244,10 +244,8 @@ std::string SetChoice::of_present(const Pairs& pairs) const {
   }
   // A jump is sought at the same time in every run: one that does not come back looks like one that
   // was half as high.
-  const bool jump = std::any_of(effects_.begin(), effects_.end(), [](const Effect* effect) {
-    const auto& parameters = effect->info().parameters;
-    return !parameters.empty() && parameters.front().instant;
-  });
+  const bool jump = std::any_of(effects_.begin(), effects_.end(),
+                                [](const Effect* effect) { return effect->info().is_jump(); });
   const double times = std::ceil(std::pow(kAim / std::max(once, 1e-9), 2));
   if (jump || times > kMostPresentTimes) {
     return "repeating the present run would not: they look alike in it";

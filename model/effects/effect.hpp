@@ -82,6 +82,9 @@ struct EffectInfo {
   std::function<std::string(const Signals&)> hidden_because = nullptr;
   /// Null: no ready procedure tells it from the others.
   std::optional<InChallenge> in_challenge = {};
+
+  /// Something jumps at the instant that is its inner parameter.
+  bool is_jump() const { return !parameters.empty() && parameters.front().instant; }
 };
 
 /// An effect's columns on the rows of the signals, at a value of its first inner parameter (ignored
@@ -105,8 +108,8 @@ class Effect {
   /// depends on the signals alone. None where the effect has no memory.
   virtual Eigen::MatrixXd starts(const Signals& signals, std::span<const double> inner) const = 0;
   /// The same physics in other shapes, which count as the effect itself (effects/shapes.hpp); the
-  /// signals must outlive them. None by default.
-  virtual std::vector<Shape> other_shapes(const Signals& signals) const = 0;
+  /// signals must outlive them. Most effects have none.
+  virtual std::vector<Shape> other_shapes(const Signals&) const { return {}; }
 };
 
 /// All effects, in the order of the documentation.

@@ -66,7 +66,6 @@ class Loop final : public Effect {
   }
 
   const EffectInfo& info() const override { return info_; }
-  std::vector<Shape> other_shapes(const Signals&) const override { return {}; }
 
   Eigen::MatrixXd regressor(const Signals& signals, std::span<const double> inner) const override {
     const Eigen::VectorXd u = input_of(signals);

@@ -70,7 +70,6 @@ class Sensitivity final : public Effect {
     return sensitivity_values(form_, signals, signals.signal(column_),
                               inner.empty() ? 0.0 : inner[0]);
   }
-  std::vector<Shape> other_shapes(const Signals&) const override { return {}; }
   Eigen::MatrixXd starts(const Signals& signals, std::span<const double> inner) const override {
     return sensitivity_starts(form_, signals, signals.signal(column_),
                               inner.empty() ? 0.0 : inner[0]);

@@ -1,4 +1,6 @@
 // The room, beyond the thermostat.
+//
+// In no challenge: the room hardly moves.
 
 #include "model/effects/function_effect.hpp"
 

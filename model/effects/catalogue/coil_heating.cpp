@@ -1,6 +1,8 @@
 // The coils warm the bench: lagging behind the copper loss of both pairs, the current that nulls
 // the ambient field included. They are cold when a run begins: the safe state before it has no
 // current.
+//
+// In no challenge: no field is held long enough.
 
 #include "model/effects/function_effect.hpp"
 #include "model/effects/history.hpp"

@@ -1,4 +1,6 @@
 // The Earth's rate on a sensitive axis that is not quite vertical, or not quite level.
+//
+// In no challenge: one rotation is a bias step.
 
 #include <numbers>
 

@@ -1,4 +1,6 @@
 // An error in proportion to the product of the fields along two axes.
+//
+// In no challenge: their procedures never energise two axes together.
 
 #include <fmt/format.h>
 

@@ -1,4 +1,6 @@
 // The sensitivity to the field changes with the temperature.
+//
+// In no challenge: their procedures sweep at one temperature.
 
 #include "model/effects/function_effect.hpp"
 

@@ -1,5 +1,7 @@
 // The sensitivity to the field changes while the coil warms: a thermal gradient turns the
 // polarisation that the field acts on.
+//
+// In no challenge: their procedures sweep at a temperature that stands still.
 
 #include "model/effects/function_effect.hpp"
 #include "model/effects/rate_of_windows.hpp"

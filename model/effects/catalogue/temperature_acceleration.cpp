@@ -1,4 +1,6 @@
 // The part of the error that follows the change of the temperature rate.
+//
+// In no challenge: windows of a minute round the edges of the steps.
 
 #include "model/effects/function_effect.hpp"
 

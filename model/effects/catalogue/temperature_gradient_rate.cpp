@@ -1,5 +1,7 @@
 // Layers of the winding that warm one after the other: the part of the error that follows how fast
 // the difference across the coil changes.
+//
+// In no challenge: the simulated gradient follows the heaters at once (gradient_lag_s).
 
 #include "model/effects/function_effect.hpp"
 
