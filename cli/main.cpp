@@ -14,6 +14,7 @@
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
 #include "daemon/manual.hpp"
+#include "model/heap.hpp"
 
 namespace {
 
@@ -120,6 +121,7 @@ int run(int argc, char** argv) {
 
 // Nothing of ours throws; what a library may still throw ends as one line.
 int main(int argc, char** argv) {
+  fogbench::model::keep_freed_memory();
   // Standard output is for results.
   spdlog::set_default_logger(spdlog::stderr_logger_mt("fogbench"));
   spdlog::set_pattern("fogbench: %v");

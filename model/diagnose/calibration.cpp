@@ -21,7 +21,10 @@ double quantile(std::vector<double> values, double level) {
 
 }  // namespace
 
-Calibration::Calibration(Eigen::MatrixXd null) : null_(std::move(null)), quantile_(null_.rows()) {
+void Calibration::add(const Eigen::MatrixXd& null) {
+  null_.conservativeResize(null.rows(), null_.cols() + null.cols());
+  null_.rightCols(null.cols()) = null;
+  quantile_.resize(null_.rows());
   for (Index c = 0; c < null_.rows(); ++c) {
     const auto row = null_.row(c);
     quantile_[c] = quantile({row.begin(), row.end()}, kQuantile);

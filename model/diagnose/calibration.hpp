@@ -10,7 +10,9 @@ namespace fogbench::model {
 class Calibration {
  public:
   /// candidates x draws, as Detector::lambdas gives them.
-  explicit Calibration(Eigen::MatrixXd null);
+  explicit Calibration(const Eigen::MatrixXd& null) { add(null); }
+  /// More draws of the same candidates.
+  void add(const Eigen::MatrixXd& null);
 
   /// Lambda less the candidate's own 95 % noise quantile.
   Eigen::VectorXd lead(const Eigen::VectorXd& lambda) const { return lambda - quantile_; }

@@ -185,6 +185,14 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
   std::sort(ranked.begin(), ranked.end());
   for (const auto& [worse, k] : ranked) views_.push_back(all[k]);
 
+  std::size_t index = 0;
+  for (Index c = 0; c < candidates(); ++c) {
+    Living living{c, {}};
+    for (const Block& block : library_.candidates[static_cast<std::size_t>(c)].blocks) {
+      if (views_.front()->alive[index++]) living.blocks.push_back(&block);
+    }
+    if (!living.blocks.empty()) living_.push_back(std::move(living));
+  }
   best_block_.assign(library_.candidates.size(), 0);
   observed_ = scan(data_as_draw(), {}, Among::kAll, &best_block_);
 }

@@ -74,6 +74,11 @@ class Detector {
     Eigen::Index candidate;
     const Block* block;
   };
+  /// The points of a candidate's grid of which the base leaves something.
+  struct Living {
+    Eigen::Index candidate;
+    std::vector<const Block*> blocks;
+  };
   /// Those that are best under at least one noise shape: the best on the whole is one of them, or
   /// next to it. `gain` per noise shape and column.
   std::vector<Contender> contenders_of(const std::vector<Eigen::ArrayXf>& gain, Among among) const;
@@ -89,6 +94,7 @@ class Detector {
   double nu_;
   ResidualEvidence evidence_;
   std::vector<std::shared_ptr<const View>> views_;
+  std::vector<Living> living_;
   Eigen::VectorXd observed_;
   std::vector<std::size_t> best_block_;
 };

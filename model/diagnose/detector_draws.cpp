@@ -152,27 +152,21 @@ MatrixXd Detector::scan(const Draws& draws, const VectorXd& signal, Among among,
 std::vector<Detector::Contender> Detector::contenders_of(const std::vector<Eigen::ArrayXf>& gain,
                                                          Among among) const {
   std::vector<Contender> out;
-  std::size_t first_block = 0;
-  for (Index c = 0; c < candidates(); ++c) {
-    const Candidate& candidate = library_.candidates[static_cast<std::size_t>(c)];
-    const std::size_t begin = first_block;
-    first_block += candidate.blocks.size();
+  for (const Living& living : living_) {
+    const Candidate& candidate = library_.candidates[static_cast<std::size_t>(living.candidate)];
     if (among == Among::kEffects && candidate.shadow()) continue;
     const std::size_t own = out.size();
     for (const Eigen::ArrayXf& of_view : gain) {
       const Block* best = nullptr;
       float most = -1.0f;
-      for (std::size_t i = 0; i < candidate.blocks.size(); ++i) {
-        if (!views_.front()->alive[begin + i]) continue;
-        const float its = sum_of(of_view, candidate.blocks[i]);
-        if (its <= most) continue;
-        most = its;
-        best = &candidate.blocks[i];
+      for (const Block* block : living.blocks) {
+        const float its = sum_of(of_view, *block);
+        best = its > most ? block : best;
+        most = std::max(most, its);
       }
       const auto same = [best](const Contender& other) { return other.block == best; };
-      if (best != nullptr &&
-          std::none_of(out.begin() + static_cast<std::ptrdiff_t>(own), out.end(), same)) {
-        out.push_back({c, best});
+      if (std::none_of(out.begin() + static_cast<std::ptrdiff_t>(own), out.end(), same)) {
+        out.push_back({living.candidate, best});
       }
     }
   }

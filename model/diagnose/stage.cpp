@@ -11,9 +11,12 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kNullDraws = 499;
-constexpr Index kNullDrawsManyRows = 199;
-constexpr Index kManyRows = 400;
+// Of noise alone: so many first, and all of them while the p-value of what leads is near a level
+// that decides something.
+constexpr Index kFirstDraws = 199;
+constexpr Index kAllDraws = 499;
+constexpr double kClearlySo = 2e-4;
+constexpr double kClearlyNot = 0.15;
 constexpr Index kRivalDraws = 299;
 constexpr int kInstants = 16;
 // A coefficient stands beyond this many standard errors.
@@ -24,10 +27,6 @@ constexpr double kBeyondRangeOfInput = 1.5;
 // Twice the log-likelihood that one parameter gains by chance in less than 5 %.
 constexpr double kPushes = 3.84;
 
-Index draws_for(Index rows) {
-  return rows > kManyRows ? kNullDrawsManyRows : kNullDraws;
-}
-
 }  // namespace
 
 Stage::Stage(const SearchInput& input, MatrixXd base, std::uint64_t seed)
@@ -35,12 +34,21 @@ Stage::Stage(const SearchInput& input, MatrixXd base, std::uint64_t seed)
       base_(std::move(base)),
       seed_(seed),
       detector_(input.whitened, base_, input.y),
-      calibration_(detector_.lambdas(detector_.draw(draws_for(input.y.size()), seed))),
+      calibration_(detector_.lambdas(detector_.draw(kFirstDraws, seed))),
       lead_(calibration_.lead(detector_.observed())) {
   for (Index c = 0; c < detector_.candidates(); ++c) {
     if (!detector_.testable(c)) continue;
     (candidate(c).shadow() ? shadows_ : effects_).push_back(c);
   }
+  if (!is_open(effects_) && !is_open(shadows_)) return;
+  calibration_.add(detector_.lambdas(detector_.draw(kAllDraws - kFirstDraws, ~seed)));
+  lead_ = calibration_.lead(detector_.observed());
+}
+
+bool Stage::is_open(const std::vector<Index>& among) const {
+  if (among.empty()) return false;
+  const double p = p_value(best(among));
+  return p > kClearlySo && p < kClearlyNot;
 }
 
 Index Stage::best(const std::vector<Index>& among) const {

@@ -62,6 +62,8 @@ class Stage {
     Draws draws;
   };
   const Noise& noise_of(Eigen::Index world);
+  /// More draws may change what the lead of the best of these means.
+  bool is_open(const std::vector<Eigen::Index>& among) const;
   /// How much larger it must be where `world` is the truth: by what the other one explains more,
   /// and for the parameters fitted.
   double larger_noise(Eigen::Index world, const Noise& noise) const;

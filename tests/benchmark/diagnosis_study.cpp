@@ -18,6 +18,7 @@
 #include <mutex>
 #include <thread>
 
+#include "model/heap.hpp"
 #include "model/write_csv.hpp"
 #include "tests/benchmark/study_cases.hpp"
 #include "tests/benchmark/study_report.hpp"
@@ -137,6 +138,7 @@ std::vector<Record> run(const std::vector<Task>& tasks, const Options& options) 
 }  // namespace
 
 int main(int argc, char** argv) {
+  fogbench::model::keep_freed_memory();
   const Options options = parse_options(argc, argv);
   std::vector<Record> records;
   for (const std::string& file : options.from) {

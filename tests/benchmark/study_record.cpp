@@ -12,7 +12,7 @@
 namespace fogbench::tests {
 namespace {
 
-constexpr std::size_t kFields = 16;
+constexpr std::size_t kFields = 17;
 
 Answer answer_of_names(const std::vector<std::string>& names) {
   Answer out;
@@ -44,6 +44,7 @@ Result<Record> parse_record(const std::string& line) {
     out.cosine = std::stod(field[10]);
     out.seconds = std::stod(field[12]);
     out.inner = std::stod(field[13]);
+    out.formula_floors = std::stod(field[16]);
   } catch (const std::exception&) {
     return bad;
   }
@@ -79,6 +80,7 @@ Record run_trial(TrialMaker& maker, const DiagnosisCase& what, std::uint64_t num
   out.outcome = judge(answer, what.hidden);
   out.says = answer.says;
   out.contradiction = answer.contradiction;
+  out.formula_floors = answer.formula_floors;
   if (with_baselines) {
     const auto answers = baseline_answers(trial.table, trial.model);
     for (const auto& names : answers) {
@@ -102,12 +104,12 @@ Record run_trial(TrialMaker& maker, const DiagnosisCase& what, std::uint64_t num
 std::string to_line(const Record& r) {
   std::vector<int> baselines;
   for (const Outcome one : r.baselines) baselines.push_back(static_cast<int>(one));
-  return fmt::format("{}\t{}\t{}\t{}\t{:g}\t{}\t{}\t{}\t{}\t{}\t{:.4f}\t{}\t{:.3f}\t{:.4g}\t{}\t{}",
-                     r.part, r.design, r.noise, r.truth, r.s, r.rows, r.trial, r.seed,
-                     static_cast<int>(r.outcome),
-                     baselines.empty() ? "-" : fmt::format("{}", fmt::join(baselines, " ")),
-                     r.cosine, r.nearest.empty() ? "-" : r.nearest, r.seconds, r.inner, r.says,
-                     r.contradiction.empty() ? "-" : r.contradiction);
+  return fmt::format(
+      "{}\t{}\t{}\t{}\t{:g}\t{}\t{}\t{}\t{}\t{}\t{:.4f}\t{}\t{:.3f}\t{:.4g}\t{}\t{}\t{:.3f}",
+      r.part, r.design, r.noise, r.truth, r.s, r.rows, r.trial, r.seed, static_cast<int>(r.outcome),
+      baselines.empty() ? "-" : fmt::format("{}", fmt::join(baselines, " ")), r.cosine,
+      r.nearest.empty() ? "-" : r.nearest, r.seconds, r.inner, r.says,
+      r.contradiction.empty() ? "-" : r.contradiction, r.formula_floors);
 }
 
 Result<std::vector<Record>> read_records(const std::filesystem::path& file) {

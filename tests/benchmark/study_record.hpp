@@ -23,7 +23,8 @@ struct Record {
   double inner = 0.0;              ///< parameter of the first hidden effect
   double cosine = 0.0;  ///< with the nearest other effect of the catalogue, first hidden effect
   std::string nearest;
-  double seconds = 0.0;  ///< of the verdict
+  double seconds = 0.0;         ///< of the verdict
+  double formula_floors = 0.0;  ///< Answer::formula_floors
   std::string says;
   std::string contradiction;  ///< within the verdict; empty: none
 };

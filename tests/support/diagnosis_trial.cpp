@@ -180,6 +180,9 @@ Answer answer_of(const Trial& trial) {
   out.says = fmt::format("{}: {} (p {:.2g})", model::name_of(out.verdict), fmt::join(names, " + "),
                          diagnosis->p_adequate);
   if (out.verdict == model::Verdict::kUnexplained) {
+    if (!diagnosis->unexplained.suggestion.empty()) {
+      out.formula_floors = diagnosis->unexplained.heldout_rms / diagnosis->noise_floor;
+    }
     out.says += fmt::format(" left p {:.2g} on {}, {}", diagnosis->unexplained.p_value,
                             fmt::join(diagnosis->unexplained.depends_on, ","),
                             diagnosis->unexplained.suggestion);

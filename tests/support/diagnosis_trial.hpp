@@ -54,7 +54,10 @@ struct Answer {
   std::vector<std::vector<std::string>> sets;  ///< one an effect found; one name: no rival
   std::string or_shape;                        ///< of the first effect found
   std::string contradiction;                   ///< contradiction_in(); empty: none
-  std::string says;                            ///< "warm_up | drift_linear + bias_step, p ..."
+  double formula_floors =
+      std::numeric_limits<double>::infinity();  ///< of what has no name: RMS of
+                                                ///< rows left out over the noise floor
+  std::string says;                             ///< "warm_up | drift_linear + bias_step, p ..."
 };
 
 /// What a verdict may never say beside itself, whatever the truth is; the first that it does say;
