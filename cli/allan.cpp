@@ -9,8 +9,8 @@
 #include "cli/command.hpp"
 #include "cli/load_table.hpp"
 #include "cli/output.hpp"
-#include "model/allan.hpp"
-#include "model/static_record.hpp"
+#include "model/noise/allan.hpp"
+#include "model/noise/static_record.hpp"
 
 namespace fogbench::cli {
 namespace {

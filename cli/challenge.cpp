@@ -13,9 +13,9 @@
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
-#include "daemon/export.hpp"
-#include "daemon/file_hash.hpp"
 #include "daemon/run_options.hpp"
+#include "record/export.hpp"
+#include "record/file_hash.hpp"
 
 namespace fogbench::cli {
 namespace fs = std::filesystem;
@@ -100,7 +100,7 @@ std::vector<std::string> effects_of(const config::ModelFile& model) {
 Status write_file_of(const std::vector<procedures::Point>& points, const fs::path& file) {
   auto out = config::OutputFile::open(file);
   if (!out) return out.error();
-  if (const Status written = daemon::write_points(points, **out); !written) return written;
+  if (const Status written = record::write_points(points, **out); !written) return written;
   return (*out)->commit();
 }
 
@@ -115,7 +115,7 @@ Result<std::size_t> make(std::uint64_t seed, const ChallengeDraw& draw, const Ne
 
   const fs::path data = folder / kMeasurementsFile;
   if (const Status ok = write_file_of(*points, data); !ok) return ok.error();
-  const auto sha256 = daemon::file_sha256(data);
+  const auto sha256 = record::file_sha256(data);
   if (!sha256) return sha256.error();
   const std::string sealed = sealed_text({.says = kSays,
                                           .software_version = FOGBENCH_VERSION,

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "acceptance/run_table.hpp"
 #include "cli/progress_line.hpp"
 #include "daemon/abort_on_signal.hpp"
-#include "daemon/run_table.hpp"
 #include "daemon/simulated_operator.hpp"
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -117,7 +117,7 @@ Result<SizedChallenge> size_effects(const ChallengeDraw& draw, const ChallengeBe
   sized.scenario.hidden.clear();
   const auto clean_points = bench.measure(sized.scenario);
   if (!clean_points) return clean_points.error();
-  model::Table clean = daemon::to_table(*clean_points);
+  model::Table clean = acceptance::to_table(*clean_points);
   const auto noise = left_by(draw.model, clean);
   if (!noise) return noise.error();
   sized.noise_deg_per_h = *noise;
@@ -129,7 +129,7 @@ Result<SizedChallenge> size_effects(const ChallengeDraw& draw, const ChallengeBe
     alone.hidden = {draw.scenario.hidden[i]};
     const auto points = bench.measure(alone);
     if (!points) return points.error();
-    clean.set_column(column(i), difference(daemon::to_table(*points), clean));
+    clean.set_column(column(i), difference(acceptance::to_table(*points), clean));
   }
   // Always as many runs: neither the progress on a terminal nor the time tells how many hide.
   for (std::size_t i = count; i < kMostHidden; ++i) {

@@ -6,7 +6,7 @@
 
 #include "cli/seal.hpp"
 #include "config/describe_scenario.hpp"
-#include "daemon/file_hash.hpp"
+#include "record/file_hash.hpp"
 
 namespace fogbench::cli {
 
@@ -50,7 +50,7 @@ Result<ChallengeSecret> open_challenge(const std::filesystem::path& folder) {
   const auto file = config::read_config<ChallengeFile>(name);
   if (!file) return file.error();
   const std::filesystem::path data = folder / kMeasurementsFile;
-  const auto sha256 = daemon::file_sha256(data);
+  const auto sha256 = record::file_sha256(data);
   if (!sha256) return sha256.error();
   if (*sha256 != file->data_sha256) {
     return Error{

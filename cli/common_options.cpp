@@ -10,7 +10,7 @@
 #include "cli/control_client.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
-#include "daemon/store.hpp"
+#include "record/store.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -26,7 +26,7 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 Result<std::filesystem::path> unnamed_store() {
-  const auto standard = daemon::default_store();
+  const auto standard = record::default_store();
   const std::string served = served_store();
   if (served.empty() || (standard && *standard == served)) return standard;
   std::error_code error;
@@ -47,7 +47,7 @@ void add_store_option(CLI::App& command, std::string& store) {
 }
 
 Result<std::filesystem::path> store_path(const std::string& store) {
-  if (store.empty()) return daemon::default_store();
+  if (store.empty()) return record::default_store();
   return std::filesystem::path(store);
 }
 

@@ -17,9 +17,9 @@
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
 #include "config/units.hpp"
-#include "model/compare.hpp"
-#include "model/report.hpp"
-#include "model/row_order.hpp"
+#include "model/compare/compare.hpp"
+#include "model/report/report.hpp"
+#include "model/table/row_order.hpp"
 
 namespace fogbench::cli {
 namespace {

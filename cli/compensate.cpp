@@ -9,8 +9,8 @@
 #include "cli/output.hpp"
 #include "config/model_file.hpp"
 #include "config/paths.hpp"
-#include "model/compensate.hpp"
-#include "model/write_csv.hpp"
+#include "model/fit/compensate.hpp"
+#include "model/table/write_csv.hpp"
 
 namespace fogbench::cli {
 namespace {

@@ -23,10 +23,10 @@
 #include "config/rounding.hpp"
 #include "config/units.hpp"
 #include "model/diagnose/diagnose.hpp"
-#include "model/diagnose/diagnosis_report.hpp"
 #include "model/diagnose/verdict_text.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "model/effects/effect.hpp"
+#include "model/report/diagnosis_report.hpp"
 
 namespace fogbench::cli {
 namespace {

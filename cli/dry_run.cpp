@@ -80,7 +80,7 @@ bool can_be_fitted(const std::string& model, std::size_t points) {
 
 Status print_results(const std::filesystem::path& store, const procedures::Plan& plan,
                      const procedures::RunSummary& summary, const DryRunOptions& options) {
-  auto reader = daemon::RunLogReader::open(store);
+  auto reader = record::RunLogReader::open(store);
   if (!reader) return reader.error();
   if (options.json) {
     auto document = run_json(**reader, summary.run);

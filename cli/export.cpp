@@ -1,4 +1,4 @@
-#include "daemon/export.hpp"
+#include "record/export.hpp"
 
 #include <fmt/format.h>
 
@@ -20,17 +20,17 @@ struct ExportOptions {
 Result<ExitStatus> run_export(const ExportOptions& options) {
   const auto path = store_to_read(options.store);
   if (!path) return path.error();
-  auto reader = daemon::RunLogReader::open(*path);
+  auto reader = record::RunLogReader::open(*path);
   if (!reader) return reader.error();
   const auto run = (*reader)->run(options.run);
   if (!run) return run.error();
-  const auto points = daemon::valid_points(**reader, options.run, options.unfinished);
+  const auto points = record::valid_points(**reader, options.run, options.unfinished);
   if (!points) return points.error();
 
   auto out = config::OutputFile::open(options.output);
   if (!out) return out.error();
-  const Status written = options.raw ? daemon::write_gyro(**reader, *run, **out)
-                                     : daemon::write_points(*points, **out);
+  const Status written = options.raw ? record::write_gyro(**reader, *run, **out)
+                                     : record::write_points(*points, **out);
   if (!written) return written.error();
   if (const Status done = (*out)->commit(); !done) return done.error();
   if (!run->completed()) {

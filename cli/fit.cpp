@@ -15,8 +15,8 @@
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
-#include "model/fit.hpp"
-#include "model/row_order.hpp"
+#include "model/fit/fit.hpp"
+#include "model/table/row_order.hpp"
 
 namespace fogbench::cli {
 namespace {

@@ -8,9 +8,9 @@
 #include <system_error>
 
 #include "cli/common_options.hpp"
-#include "daemon/file_hash.hpp"
-#include "daemon/run_log_reader.hpp"
 #include "drivers/clock.hpp"
+#include "record/file_hash.hpp"
+#include "record/run_log_reader.hpp"
 
 namespace fogbench::cli {
 
@@ -22,11 +22,11 @@ Result<std::string> hash_of_data(const std::string& name, const DataOptions& dat
   if (!stored) {
     std::error_code ignored;  // a pipe cannot be read twice
     if (!std::filesystem::is_regular_file(name, ignored)) return std::string();
-    return daemon::file_sha256(name);
+    return record::file_sha256(name);
   }
   const auto path = store_to_read(stored->store);
   if (!path) return path.error();
-  auto reader = daemon::RunLogReader::open(*path);
+  auto reader = record::RunLogReader::open(*path);
   if (!reader) return reader.error();
   return (*reader)->raw_sha256(stored->run);
 }

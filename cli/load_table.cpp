@@ -8,12 +8,12 @@
 #include <map>
 #include <optional>
 
+#include "acceptance/run_table.hpp"
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
-#include "daemon/export.hpp"
-#include "daemon/run_log_reader.hpp"
-#include "daemon/run_table.hpp"
+#include "record/export.hpp"
+#include "record/run_log_reader.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -46,16 +46,16 @@ Result<model::Table> load_run(const std::string& store, std::int64_t run, const 
                               bool unfinished) {
   const auto path = store_to_read(store);
   if (!path) return path.error();
-  auto reader = daemon::RunLogReader::open(*path);
+  auto reader = record::RunLogReader::open(*path);
   if (!reader) return reader.error();
-  const auto points = daemon::valid_points(**reader, run, unfinished);
+  const auto points = record::valid_points(**reader, run, unfinished);
   if (!points) return points.error();
   const auto info = (*reader)->run(run);
   if (!info) return info.error();
   if (!info->completed()) {
     print_note(fmt::format("run {} was not completed ({})", run, info->outcome()));
   }
-  model::Table table = daemon::to_table(*points);
+  model::Table table = acceptance::to_table(*points);
   for (const auto& [wanted, name] : renames) {
     if (!table.has(name)) {
       return Error{ErrorCode::kBadInput, fmt::format("run {}: no column {}", run, name)};

@@ -14,7 +14,7 @@
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
 #include "daemon/manual.hpp"
-#include "model/heap.hpp"
+#include "model/fit/heap.hpp"
 
 namespace {
 

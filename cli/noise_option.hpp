@@ -7,8 +7,8 @@
 
 #include "cli/load_table.hpp"
 #include "config/result.hpp"
-#include "model/fit.hpp"
-#include "model/table.hpp"
+#include "model/fit/fit.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::cli {
 

@@ -17,17 +17,18 @@ namespace {
 struct PassportCommandOptions {
   PassportOptions passport;
   std::string output;
-  daemon::Language language = daemon::Language::kEnglish;
+  acceptance::Language language = acceptance::Language::kEnglish;
   bool json = false;
 };
 
-std::string document_of(const daemon::Passport& passport, const PassportCommandOptions& options) {
+std::string document_of(const acceptance::Passport& passport,
+                        const PassportCommandOptions& options) {
   if (std::filesystem::path(options.output).extension() == ".json") {
-    return daemon::passport_json(passport).dump(2, ' ', false,
-                                                nlohmann::ordered_json::error_handler_t::replace) +
+    return acceptance::passport_json(passport).dump(
+               2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
            "\n";
   }
-  return daemon::passport_html(passport, options.language);
+  return acceptance::passport_html(passport, options.language);
 }
 
 Result<ExitStatus> run_passport(const PassportCommandOptions& options) {
@@ -42,7 +43,7 @@ Result<ExitStatus> run_passport(const PassportCommandOptions& options) {
     if (!written) return written.error();
   }
   if (options.json) {
-    print_json(daemon::passport_json(*passport));
+    print_json(acceptance::passport_json(*passport));
   } else if (options.output != "-") {
     fmt::print("{}: gyro {}; {}\n", name_of(passport->judged.overall), passport->acceptance.gyro(),
                options.output);
@@ -53,7 +54,7 @@ Result<ExitStatus> run_passport(const PassportCommandOptions& options) {
 }  // namespace
 
 void add_passport(CLI::App& app, Action& action) {
-  using daemon::Language;
+  using acceptance::Language;
   add_command<PassportCommandOptions>(
       app, action, "passport", "Write a gyro's passport: results, verdict, where they come from",
       "  fogbench passport 7 -o passport.html --language ru\n"

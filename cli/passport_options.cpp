@@ -43,14 +43,14 @@ void add_passport_options(CLI::App& command, PassportOptions& options) {
   add_store_option(command, options.store);
 }
 
-Result<daemon::Passport> judge_runs(const PassportOptions& options) {
+Result<acceptance::Passport> judge_runs(const PassportOptions& options) {
   const auto runs = run_numbers(options.runs);
   if (!runs) return runs.error();
   const auto limits_file = config::find_config("limits", options.limits);
   if (!limits_file) return limits_file.error();
   auto limits = config::load_limits(*limits_file);
   if (!limits) return limits.error();
-  daemon::AcceptanceOptions how{.model = {}, .unfinished = options.unfinished};
+  acceptance::AcceptanceOptions how{.model = {}, .unfinished = options.unfinished};
   if (!options.model.empty()) {
     const auto file = config::find_config("models", options.model);
     if (!file) return file.error();
@@ -60,13 +60,13 @@ Result<daemon::Passport> judge_runs(const PassportOptions& options) {
   }
   const auto path = store_to_read(options.store);
   if (!path) return path.error();
-  auto reader = daemon::RunLogReader::open(*path);
+  auto reader = record::RunLogReader::open(*path);
   if (!reader) return reader.error();
-  auto acceptance = daemon::gather_acceptance(**reader, *runs, how);
+  auto acceptance = acceptance::gather_acceptance(**reader, *runs, how);
   if (!acceptance) return acceptance.error();
-  return daemon::make_passport(std::move(*acceptance), std::move(*limits),
-                               drivers::utc_text(drivers::SteadyClock().wall_now()),
-                               FOGBENCH_VERSION);
+  return acceptance::make_passport(std::move(*acceptance), std::move(*limits),
+                                   drivers::utc_text(drivers::SteadyClock().wall_now()),
+                                   FOGBENCH_VERSION);
 }
 
 }  // namespace fogbench::cli

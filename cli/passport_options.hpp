@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "acceptance/passport.hpp"
 #include "config/result.hpp"
-#include "daemon/passport.hpp"
 
 namespace fogbench::cli {
 
@@ -22,6 +22,6 @@ struct PassportOptions {
 void add_passport_options(CLI::App& command, PassportOptions& options);
 
 /// Reads the runs and judges them. Errors: kUsage, kBadInput, kStore.
-Result<daemon::Passport> judge_runs(const PassportOptions& options);
+Result<acceptance::Passport> judge_runs(const PassportOptions& options);
 
 }  // namespace fogbench::cli

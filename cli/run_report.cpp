@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "acceptance/results.hpp"
 #include "cli/output.hpp"
-#include "daemon/names.hpp"
-#include "daemon/results.hpp"
-#include "daemon/store.hpp"
 #include "procedures/estimate.hpp"
+#include "record/store.hpp"
 
 namespace fogbench::cli {
-using daemon::Deviation;
-using daemon::Figure;
-using daemon::SweepResult;
+using acceptance::Deviation;
+using acceptance::Figure;
+using acceptance::SweepResult;
 using nlohmann::ordered_json;
 using Align = TextTable::Align;
 
@@ -28,14 +27,14 @@ ordered_json to_json(const Figure& figure) {
   return {{"value", figure.value}, {"standard_error", figure.standard_error}};
 }
 
-Result<daemon::RunResults> results_of(daemon::RunLogReader& reader, std::int64_t run) {
+Result<acceptance::RunResults> results_of(record::RunLogReader& reader, std::int64_t run) {
   const auto stored = reader.chain_points(run);
   if (!stored) return stored.error();
   std::vector<procedures::Point> points;
   for (const auto& point : *stored) {
     if (point.void_because.empty()) points.push_back(point.point);
   }
-  return daemon::derive_results(points);
+  return acceptance::derive_results(points);
 }
 
 std::string temperature_table(const std::vector<Deviation>& rows) {
@@ -101,7 +100,7 @@ std::string sweep_tables(const std::vector<SweepResult>& sweeps) {
          closures.text();
 }
 
-std::string results_text_of(const daemon::RunResults& results, bool every_level) {
+std::string results_text_of(const acceptance::RunResults& results, bool every_level) {
   const std::string tables = temperature_table(results.temperature) +
                              (every_level ? magnetic_table(results.magnetic) : "") +
                              sweep_tables(results.sweeps);
@@ -109,7 +108,7 @@ std::string results_text_of(const daemon::RunResults& results, bool every_level)
   return tables + "\nStandard errors are those of white noise within the averages: lower bounds.\n";
 }
 
-ordered_json to_json(const daemon::StoredRun& run) {
+ordered_json to_json(const record::StoredRun& run) {
   const procedures::RunHeader& header = run.header;
   ordered_json json{{"run", run.run},
                     {"procedure", header.procedure},
@@ -142,13 +141,13 @@ ordered_json to_json(const daemon::StoredRun& run) {
   return json;
 }
 
-ordered_json to_json(const daemon::StoredPoint& stored) {
-  ordered_json json{{"kind", daemon::name_of(stored.point.kind)},
+ordered_json to_json(const record::StoredPoint& stored) {
+  ordered_json json{{"kind", name_of(stored.point.kind)},
                     {"test", stored.point.test},
                     {"segment", stored.point.segment},
                     {"frames", stored.point.count},
                     {"frames_dropped", stored.point.dropped}};
-  for (const auto& column : daemon::point_columns()) {
+  for (const auto& column : record::point_columns()) {
     json[std::string(column.name)] = stored.point.*column.value;
   }
   if (!stored.void_because.empty()) json["void_because"] = stored.void_because;
@@ -189,7 +188,7 @@ ordered_json array_of(const std::vector<T>& rows) {
   return array;
 }
 
-std::string heading(const daemon::StoredRun& run) {
+std::string heading(const record::StoredRun& run) {
   const procedures::RunHeader& header = run.header;
   std::string text = fmt::format("Run {}: {} on bench {}, {}\n", run.run, header.procedure,
                                  header.bench, run.outcome());
@@ -239,7 +238,7 @@ std::string instrument_table(const std::vector<procedures::InstrumentRecord>& in
   return table.empty() ? "" : "\n" + table.text();
 }
 
-std::string event_list(const std::vector<daemon::StoredEvent>& events) {
+std::string event_list(const std::vector<record::StoredEvent>& events) {
   std::string text;
   for (const auto& event : events) {
     text += fmt::format("  {:>12}  {:<7}  {}\n",
@@ -251,13 +250,13 @@ std::string event_list(const std::vector<daemon::StoredEvent>& events) {
 
 }  // namespace
 
-Result<std::string> results_text(daemon::RunLogReader& reader, std::int64_t run) {
+Result<std::string> results_text(record::RunLogReader& reader, std::int64_t run) {
   const auto results = results_of(reader, run);
   if (!results) return results.error();
   return results_text_of(*results, false);
 }
 
-Result<std::string> run_text(daemon::RunLogReader& reader, std::int64_t run) {
+Result<std::string> run_text(record::RunLogReader& reader, std::int64_t run) {
   const auto stored = reader.run(run);
   if (!stored) return stored.error();
   const auto instruments = reader.instruments(run);
@@ -270,7 +269,7 @@ Result<std::string> run_text(daemon::RunLogReader& reader, std::int64_t run) {
          event_list(*events);
 }
 
-Result<ordered_json> run_json(daemon::RunLogReader& reader, std::int64_t run) {
+Result<ordered_json> run_json(record::RunLogReader& reader, std::int64_t run) {
   const auto stored = reader.run(run);
   if (!stored) return stored.error();
   const auto instruments = reader.instruments(run);

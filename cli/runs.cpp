@@ -5,7 +5,7 @@
 #include "cli/command.hpp"
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
-#include "daemon/run_log_reader.hpp"
+#include "record/run_log_reader.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -15,7 +15,7 @@ struct RunsOptions {
   bool json = false;
 };
 
-nlohmann::ordered_json row_of(const daemon::StoredRun& run) {
+nlohmann::ordered_json row_of(const record::StoredRun& run) {
   return {{"run", run.run},
           {"started_at", run.header.started_at},
           {"procedure", run.header.procedure},
@@ -31,7 +31,7 @@ nlohmann::ordered_json row_of(const daemon::StoredRun& run) {
 Result<ExitStatus> run_runs(const RunsOptions& options) {
   const auto path = store_to_read(options.store);
   if (!path) return path.error();
-  auto reader = daemon::RunLogReader::open(*path);
+  auto reader = record::RunLogReader::open(*path);
   if (!reader) return reader.error();
   const auto runs = (*reader)->runs();
   if (!runs) return runs.error();

@@ -19,7 +19,7 @@ struct ShowOptions {
 Result<ExitStatus> run_show(const ShowOptions& options) {
   const auto path = store_to_read(options.store);
   if (!path) return path.error();
-  auto reader = daemon::RunLogReader::open(*path);
+  auto reader = record::RunLogReader::open(*path);
   if (!reader) return reader.error();
   if (options.json) {
     const auto document = run_json(**reader, options.run);

@@ -69,18 +69,18 @@ std::string repeats_table(const model::Judged& judged) {
   return table.empty() ? "" : "\nFrom test to test\n\n" + table.text();
 }
 
-void print_text(const daemon::Passport& passport, const VerdictOptions& options) {
+void print_text(const acceptance::Passport& passport, const VerdictOptions& options) {
   const model::Judged& judged = passport.judged;
   fmt::print("{}: gyro {} against limits {}, U with k = {:g}\n\n{}{}", name_of(judged.overall),
              passport.acceptance.gyro(), passport.limits.name, judged.coverage_factor,
              results_table(judged), repeats_table(judged));
   for (const model::RunChange& change : passport.acceptance.changes) {
-    fmt::print("\n{}\n",
-               daemon::change_text(change, judged.coverage_factor, daemon::Language::kEnglish));
+    fmt::print("\n{}\n", acceptance::change_text(change, judged.coverage_factor,
+                                                 acceptance::Language::kEnglish));
   }
   if (!passport.remarks.empty()) fmt::print("\n");
-  for (const daemon::Remark& remark : passport.remarks) {
-    fmt::print("remark: {}\n", daemon::remark_text(remark, daemon::Language::kEnglish));
+  for (const acceptance::Remark& remark : passport.remarks) {
+    fmt::print("remark: {}\n", acceptance::remark_text(remark, acceptance::Language::kEnglish));
   }
   std::string same;
   for (const std::string& run : options.passport.runs) same += " " + run;
@@ -95,7 +95,7 @@ Result<ExitStatus> run_verdict(const VerdictOptions& options) {
   const auto passport = judge_runs(options.passport);
   if (!passport) return passport.error();
   if (options.json) {
-    print_json(daemon::verdict_json(*passport));
+    print_json(acceptance::verdict_json(*passport));
   } else {
     print_text(*passport, options);
   }

@@ -14,11 +14,13 @@ function(fogbench_sources_at_once target)
   endif()
 endfunction()
 
-# fogbench_library(<folder> SOURCES a.cpp ... PUBLIC targets... PRIVATE targets...)
-# declares the static library of one room, fogbench::<folder>.
+# fogbench_library(<folder> PUBLIC targets... PRIVATE targets...) declares the static library of one
+# room, fogbench::<folder>: every source in it and below it, but main.cpp.
 function(fogbench_library folder)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  add_library(fogbench_${folder} STATIC ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
+  list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/main.cpp)
+  add_library(fogbench_${folder} STATIC ${sources})
   add_library(fogbench::${folder} ALIAS fogbench_${folder})
   target_include_directories(fogbench_${folder} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(fogbench_${folder}

@@ -11,7 +11,7 @@ install(TARGETS fogbenchd RUNTIME DESTINATION ${CMAKE_INSTALL_SBINDIR})
 foreach(kind benches data devices limits models procedures scenarios schemas)
   install(DIRECTORY config/${kind} DESTINATION ${CMAKE_INSTALL_DATADIR}/fogbench/config)
 endforeach()
-install(FILES daemon/README.md daemon/protocol.md daemon/run-log.md
+install(FILES daemon/README.md daemon/protocol.md record/run-log.md
   DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fogbench)
 install(FILES config/README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fogbench RENAME config.md)
 install(FILES procedures/README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/fogbench RENAME procedures.md)

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -20,6 +21,18 @@ using Number = std::variant<double, std::string>;
 using NumberList = std::variant<std::vector<double>, std::string>;
 
 enum class HeatingMode { kOff, kBoost, kNormal };
+/// As the run log and the exports spell it.
+constexpr std::string_view name_of(HeatingMode mode) {
+  switch (mode) {
+    case HeatingMode::kOff:
+      return "off";
+    case HeatingMode::kBoost:
+      return "boost";
+    case HeatingMode::kNormal:
+      return "normal";
+  }
+  return "";
+}
 /// What a sweep drives: an axis of the gyro, or north, where the vertical pair points, whatever
 /// axes of the gyro lie along it.
 enum class Axis { kX, kY, kZ, kNorth };

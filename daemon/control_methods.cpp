@@ -14,8 +14,8 @@
 #include "daemon/desk_json.hpp"
 #include "daemon/metrics.hpp"
 #include "daemon/parameters_json.hpp"
-#include "daemon/run_log.hpp"
 #include "daemon/session.hpp"
+#include "record/run_log.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -157,7 +157,7 @@ Outcome discard_run(RunDesk& desk, const std::filesystem::path& store, std::int6
                     const Caller& caller) {
   if (const auto refused = desk.may_discard(run)) return *refused;
   const Person by = person_of(caller, fmt::format("discard run {}", run));
-  const auto log = RunLog::open(store);
+  const auto log = record::RunLog::open(store);
   if (!log) return refusal(log.error());
   const Status given_up = (*log)->give_up(run, "given up by " + by.name);
   if (!given_up) return refusal(given_up.error());

@@ -5,9 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "config/json_file.hpp"
-#include "daemon/names.hpp"
-#include "daemon/store.hpp"
 #include "procedures/run_state.hpp"
+#include "record/store.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -77,7 +76,7 @@ ordered_json to_json(const InterruptedRun& run) {
 
 ordered_json to_json(const procedures::MonitorRow& row) {
   ordered_json values = ordered_json::object();
-  for (const MonitorColumn& column : monitor_columns()) {
+  for (const record::MonitorColumn& column : record::monitor_columns()) {
     values[std::string(column.name)] = number(column.value(row));
   }
   values["mode"] = name_of(row.thermostat.mode);

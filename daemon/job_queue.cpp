@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "daemon/names.hpp"
-
 namespace fogbench::daemon {
 using procedures::RunOutcome;
 

@@ -2,13 +2,13 @@
 
 #include <cmath>
 
-#include "daemon/store.hpp"
+#include "record/store.hpp"
 
 namespace fogbench::daemon {
 
 std::vector<KnownValue> KnownValues::missing(const procedures::MonitorRow& row) {
   std::vector<KnownValue> missing;
-  for (const MonitorColumn& column : monitor_columns()) {
+  for (const record::MonitorColumn& column : record::monitor_columns()) {
     const double value = column.value(row);
     if (std::isfinite(value)) {
       last_[column.name] = {column.name, value, row.time_s};

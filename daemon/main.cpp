@@ -20,8 +20,8 @@
 #include "daemon/serve.hpp"
 #include "daemon/session.hpp"
 #include "daemon/simulated_operator.hpp"
-#include "daemon/store.hpp"
 #include "daemon/terminal_operator.hpp"
+#include "record/store.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -131,7 +131,7 @@ Status run(const DaemonOptions& options) {
   }
   std::filesystem::path store = options.store;
   if (options.store.empty()) {
-    const auto standard = default_store();
+    const auto standard = record::default_store();
     if (!standard) return standard.error();
     store = *standard;
   }

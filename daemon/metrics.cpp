@@ -9,8 +9,7 @@
 
 #include "config/output_file.hpp"
 #include "daemon/desk_json.hpp"
-#include "daemon/names.hpp"
-#include "daemon/store.hpp"
+#include "record/store.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -83,7 +82,7 @@ void add_last_run(Exposition& out, const EndedRun& run, const Counts& outcomes) 
 }
 
 void add_values(Exposition& out, const procedures::MonitorRow& row) {
-  for (const MonitorColumn& column : monitor_columns()) {
+  for (const record::MonitorColumn& column : record::monitor_columns()) {
     const double value = column.value(row);
     // The time has a metric of its own; what an instrument did not say is left out.
     if (column.name == "time_s" || !std::isfinite(value)) continue;

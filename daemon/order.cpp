@@ -39,7 +39,7 @@ Result<PlannedProcedure> plan_order(const Order& order, const Setup& setup,
     if (planned && !order.gyro.empty()) planned->gyro = order.gyro;
     return planned;
   }
-  const auto log = RunLogReader::open(store);
+  const auto log = record::RunLogReader::open(store);
   if (!log) return log.error();
   return plan_resumption(**log, order.takes_up, setup);
 }

@@ -10,7 +10,7 @@
 #include "config/json_file.hpp"
 #include "config/output_file.hpp"
 #include "daemon/parameters_json.hpp"
-#include "daemon/store.hpp"
+#include "record/store.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -61,11 +61,11 @@ std::string title_of(const Order& order) {
 }  // namespace
 
 Result<QueueFile> QueueFile::open(const std::filesystem::path& store) {
-  make_default_folder(store);
-  auto serving = drivers::ProcessLock::take(beside_store(store, ".serving"), 0644,
+  record::make_default_folder(store);
+  auto serving = drivers::ProcessLock::take(record::beside_store(store, ".serving"), 0644,
                                             "run log " + store.string());
   if (!serving) return serving.error();
-  return QueueFile(beside_store(store, ".queue"), std::move(*serving));
+  return QueueFile(record::beside_store(store, ".queue"), std::move(*serving));
 }
 
 Status QueueFile::load(RunDesk& desk, const Setup& setup, const std::filesystem::path& store) {

@@ -32,7 +32,7 @@ Error damaged_header(std::int64_t run) {
 }
 
 /// The whole procedure as it was planned then.
-Result<PlannedProcedure> recorded_procedure(const StoredRun& run,
+Result<PlannedProcedure> recorded_procedure(const record::StoredRun& run,
                                             const config::BenchConfig& bench) {
   const auto record =
       nlohmann::ordered_json::parse(run.header.procedure_json, nullptr, /*exceptions=*/false);
@@ -65,9 +65,10 @@ std::optional<std::size_t> index_of(const Plan& plan, std::string_view path) {
 }
 
 /// The index of the step that the run had reached; nothing when the record does not fit the plan.
-std::optional<std::size_t> position(const StoredRun& run, const std::vector<StoredStep>& steps,
+std::optional<std::size_t> position(const record::StoredRun& run,
+                                    const std::vector<record::StoredStep>& steps,
                                     const Plan& whole) {
-  const auto last = std::find_if(steps.rbegin(), steps.rend(), [](const StoredStep& step) {
+  const auto last = std::find_if(steps.rbegin(), steps.rend(), [](const record::StoredStep& step) {
     return !step.path.starts_with(procedures::kRedone);
   });
   if (last == steps.rend()) {
@@ -82,15 +83,16 @@ std::optional<std::size_t> position(const StoredRun& run, const std::vector<Stor
 
 /// From the step at `path` on, everything is measured anew: in the last run of the chain that has
 /// begun it, and in those after that one.
-Result<std::vector<Continuation::Repeated>> repeated(RunLogReader& log,
-                                                     const std::vector<StoredRun>& chain,
+Result<std::vector<Continuation::Repeated>> repeated(record::RunLogReader& log,
+                                                     const std::vector<record::StoredRun>& chain,
                                                      const std::string& path) {
   std::vector<Continuation::Repeated> from;
   for (auto run = chain.rbegin(); run != chain.rend(); ++run) {
     const auto steps = log.steps(run->run);
     if (!steps) return steps.error();
-    const auto begun = std::find_if(steps->rbegin(), steps->rend(),
-                                    [&](const StoredStep& step) { return step.path == path; });
+    const auto begun =
+        std::find_if(steps->rbegin(), steps->rend(),
+                     [&](const record::StoredStep& step) { return step.path == path; });
     if (begun != steps->rend()) {
       from.push_back({run->run, begun->started_s});
       return from;
@@ -101,15 +103,15 @@ Result<std::vector<Continuation::Repeated>> repeated(RunLogReader& log,
 }
 
 /// Points that count and are not measured anew.
-Result<std::size_t> measured(RunLogReader& log, const std::vector<StoredRun>& chain,
+Result<std::size_t> measured(record::RunLogReader& log, const std::vector<record::StoredRun>& chain,
                              const std::vector<Continuation::Repeated>& repeated) {
   std::size_t kept = 0;
-  for (const StoredRun& run : chain) {
+  for (const record::StoredRun& run : chain) {
     const auto points = log.points(run.run);
     if (!points) return points.error();
     const auto anew = std::find_if(repeated.begin(), repeated.end(),
                                    [&](const auto& from) { return from.run == run.run; });
-    for (const StoredPoint& point : *points) {
+    for (const record::StoredPoint& point : *points) {
       const bool again = anew != repeated.end() && point.point.time_s >= anew->from_s;
       kept += point.void_because.empty() && !again ? 1 : 0;
     }
@@ -117,7 +119,7 @@ Result<std::size_t> measured(RunLogReader& log, const std::vector<StoredRun>& ch
   return kept;
 }
 
-Status check(const StoredRun& run, const Setup& setup) {
+Status check(const record::StoredRun& run, const Setup& setup) {
   const auto refused = [&](const std::string& why) {
     return config::bad_input(fmt::format("run {} cannot be taken up: {}", run.run, why));
   };
@@ -158,11 +160,12 @@ Status compare(const std::vector<InstrumentRecord>& then,
 
 }  // namespace
 
-Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, const Setup& setup) {
+Result<PlannedProcedure> plan_resumption(record::RunLogReader& log, std::int64_t run,
+                                         const Setup& setup) {
   const bool under_way = log.being_written(run);  // before its record: it may end meanwhile
   const auto chain = log.chain(run);
   if (!chain) return chain.error();
-  const StoredRun& last = chain->back();
+  const record::StoredRun& last = chain->back();
   if (const Status good = check(last, setup); !good) return good.error();
   if (!last.end && under_way) {
     return config::bad_input(fmt::format("run {} cannot be taken up: it is still under way", run));
@@ -235,11 +238,12 @@ Result<Continuation> take_up(const PlannedProcedure& procedure, procedures::RunE
   return continuation;
 }
 
-Result<std::vector<StoredRun>> interrupted_runs(RunLogReader& log, const Setup& setup) {
+Result<std::vector<record::StoredRun>> interrupted_runs(record::RunLogReader& log,
+                                                        const Setup& setup) {
   const auto runs = log.runs();
   if (!runs) return runs.error();
-  std::vector<StoredRun> interrupted;
-  for (const StoredRun& run : *runs) {
+  std::vector<record::StoredRun> interrupted;
+  for (const record::StoredRun& run : *runs) {
     // A real bench and a dry run of its file have the same name.
     const bool simulated = !run.header.scenario_json.empty();
     const bool ours = run.header.bench == setup.bench.name &&

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "daemon/run_log_reader.hpp"
 #include "daemon/session.hpp"
+#include "record/run_log_reader.hpp"
 
 namespace fogbench::daemon {
 
@@ -19,7 +19,8 @@ namespace fogbench::daemon {
 /// of the record: an operator confirms that it is still in its place. Errors: kBadInput
 /// when there is no such run, it was completed or taken up already, or bench, instruments' files or
 /// scenario are not those of the record; kLimit; kStore.
-Result<PlannedProcedure> plan_resumption(RunLogReader& log, std::int64_t run, const Setup& setup);
+Result<PlannedProcedure> plan_resumption(record::RunLogReader& log, std::int64_t run,
+                                         const Setup& setup);
 
 /// What the run that takes up another says of it, when the instruments are those of the record.
 /// Precondition: `procedure` takes one up. Errors: kDevice, and the instruments'.
@@ -29,6 +30,7 @@ Result<procedures::Continuation> take_up(const PlannedProcedure& procedure,
 /// The runs of this bench that nobody ended, took up or gave up, oldest first, whatever came after
 /// them. What another program writes at this moment does not count, nor does a dry run of a real
 /// bench's file.
-Result<std::vector<StoredRun>> interrupted_runs(RunLogReader& log, const Setup& setup);
+Result<std::vector<record::StoredRun>> interrupted_runs(record::RunLogReader& log,
+                                                        const Setup& setup);
 
 }  // namespace fogbench::daemon

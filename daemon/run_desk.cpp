@@ -5,8 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "daemon/names.hpp"
-
 namespace fogbench::daemon {
 namespace {
 

@@ -24,9 +24,9 @@
 #include "daemon/queue_file.hpp"
 #include "daemon/resumption.hpp"
 #include "daemon/run_desk.hpp"
-#include "daemon/run_log.hpp"
 #include "daemon/service_manager.hpp"
 #include "daemon/stop_signals.hpp"
+#include "record/run_log.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -67,11 +67,11 @@ Result<std::unique_ptr<ControlSocket>> open_socket(const std::string& named, mod
 /// What the last daemon left behind: a run that it did not end, and what was to be run after it.
 Status take_over(const Setup& setup, const std::filesystem::path& store, QueueFile& queue,
                  RunDesk& desk) {
-  const auto log = RunLogReader::open(store);
+  const auto log = record::RunLogReader::open(store);
   if (!log) return log.error();
   const auto left = interrupted_runs(**log, setup);
   if (!left) return left.error();
-  for (const StoredRun& run : *left) {
+  for (const record::StoredRun& run : *left) {
     const procedures::RunHeader& header = run.header;
     const auto resumed = plan_resumption(**log, run.run, setup);
     const std::string obstacle = resumed ? "" : resumed.error().message;
@@ -226,7 +226,7 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   if (!socket) return socket.error();
   const auto metrics = MetricsFile::open(options.metrics, clock);
   if (!metrics) return metrics.error();
-  const auto log = RunLog::open(store);
+  const auto log = record::RunLog::open(store);
   if (!log) return log.error();
   DeskRecorder record(**log, desk);
   if (const Status taken = take_over(planned_for, store, *queue, desk); !taken) return taken;

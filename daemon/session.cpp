@@ -184,7 +184,7 @@ Result<std::unique_ptr<Session>> Session::open(Setup setup, std::uint64_t seed,
   auto session = begun(std::move(setup), seed, speed, person);
   if (!session) return session;
   // After the bench: one that cannot be reached or simulated leaves nothing behind.
-  auto log = RunLog::open(store);
+  auto log = record::RunLog::open(store);
   if (!log) return log.error();
   (*session)->log_ = std::move(*log);
   (*session)->record_in(*(*session)->log_);

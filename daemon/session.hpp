@@ -14,13 +14,13 @@
 #include "config/bench.hpp"
 #include "config/result.hpp"
 #include "config/scenario.hpp"
-#include "daemon/run_log.hpp"
 #include "drivers/clock.hpp"
 #include "drivers/instruments.hpp"
 #include "drivers/open_bench.hpp"
 #include "drivers/safe_state.hpp"
 #include "procedures/plan.hpp"
 #include "procedures/run_engine.hpp"
+#include "record/run_log.hpp"
 
 namespace fogbench::daemon {
 
@@ -131,7 +131,7 @@ class Session {
   Speed speed_;
   drivers::Operator& person_;
   std::unique_ptr<drivers::Clock> clock_;
-  std::unique_ptr<RunLog> log_;  ///< null when the record is the caller's
+  std::unique_ptr<record::RunLog> log_;  ///< null when the record is the caller's
   drivers::Bench bench_;
   std::unique_ptr<procedures::RunEngine> engine_;
 };

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/result.hpp"
@@ -55,6 +56,18 @@ struct InstrumentRecord {
 };
 
 enum class PointKind { kBaseline, kAverage, kTransient };
+/// As the run log and the exports spell it.
+constexpr std::string_view name_of(PointKind kind) {
+  switch (kind) {
+    case PointKind::kBaseline:
+      return "baseline";
+    case PointKind::kAverage:
+      return "average";
+    case PointKind::kTransient:
+      return "transient";
+  }
+  return "";
+}
 
 /// One averaged measurement. Missing quantities are NaN. Times are since the gyro's power-on.
 struct Point {
@@ -98,6 +111,20 @@ struct MonitorRow {
 /// A run ends as one of the first three. The last is written when nobody ended it and another run
 /// takes it up, or a person gives it up.
 enum class RunOutcome { kCompleted, kAborted, kFailed, kInterrupted };
+/// As the run log and the exports spell it.
+constexpr std::string_view name_of(RunOutcome outcome) {
+  switch (outcome) {
+    case RunOutcome::kCompleted:
+      return "completed";
+    case RunOutcome::kAborted:
+      return "aborted";
+    case RunOutcome::kFailed:
+      return "failed";
+    case RunOutcome::kInterrupted:
+      return "interrupted";
+  }
+  return "";
+}
 
 struct RunEnd {
   RunOutcome outcome = RunOutcome::kCompleted;

@@ -1,7 +1,7 @@
 #include "model/diagnose/base_columns.hpp"
 
-#include "model/design.hpp"
 #include "model/diagnose/search.hpp"
+#include "model/fit/design.hpp"
 
 namespace fogbench::model {
 

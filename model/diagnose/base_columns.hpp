@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "model/diagnose/working_table.hpp"
-#include "model/signals.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "model/diagnose/detector_view.hpp"
-#include "model/shape_grid.hpp"
+#include "model/noise/shape_grid.hpp"
 
 namespace fogbench::model {
 namespace {

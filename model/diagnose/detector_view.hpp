@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "model/diagnose/detector.hpp"
-#include "model/kernels.hpp"
+#include "model/fit/kernels.hpp"
 
 namespace fogbench::model {
 

@@ -9,19 +9,19 @@
 #include <optional>
 #include <utility>
 
-#include "model/bad_rows.hpp"
-#include "model/design.hpp"
 #include "model/diagnose/adequacy.hpp"
 #include "model/diagnose/base_columns.hpp"
 #include "model/diagnose/first_look.hpp"
 #include "model/diagnose/formula_search.hpp"
 #include "model/diagnose/heldout.hpp"
 #include "model/diagnose/loop_choice.hpp"
-#include "model/diagnose/next_measurement.hpp"
 #include "model/diagnose/refit_gates.hpp"
 #include "model/diagnose/thermometer.hpp"
 #include "model/diagnose/working_table.hpp"
-#include "model/row_order.hpp"
+#include "model/fit/design.hpp"
+#include "model/next/next_measurement.hpp"
+#include "model/table/bad_rows.hpp"
+#include "model/table/row_order.hpp"
 
 namespace fogbench::model {
 namespace {

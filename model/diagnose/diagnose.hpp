@@ -13,11 +13,11 @@
 
 #include "config/model_file.hpp"
 #include "config/result.hpp"
-#include "model/compare.hpp"
+#include "model/compare/compare.hpp"
 #include "model/diagnose/loop_figures.hpp"
-#include "model/diagnose/next_measurement.hpp"
 #include "model/diagnose/search.hpp"
-#include "model/table.hpp"
+#include "model/next/next_measurement.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::model {
 

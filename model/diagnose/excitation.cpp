@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "model/diagnose/library_builder.hpp"
-#include "model/moving_signals.hpp"
+#include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {
 

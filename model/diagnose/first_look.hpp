@@ -9,9 +9,9 @@
 
 #include "config/result.hpp"
 #include "model/diagnose/search.hpp"
-#include "model/fit.hpp"
-#include "model/noise_prior.hpp"
-#include "model/table.hpp"
+#include "model/fit/fit.hpp"
+#include "model/noise/noise_prior.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::model {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "model/diagnose/working_table.hpp"
-#include "model/expression.hpp"
-#include "model/measurement_columns.hpp"
-#include "model/moving_signals.hpp"
+#include "model/effects/expression.hpp"
+#include "model/table/measurement_columns.hpp"
+#include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/signals.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model {
 

@@ -11,7 +11,7 @@
 
 #include "model/diagnose/formula_parts.hpp"
 #include "model/diagnose/heldout.hpp"
-#include "model/expression.hpp"
+#include "model/effects/expression.hpp"
 
 namespace fogbench::model {
 namespace {

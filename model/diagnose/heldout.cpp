@@ -7,8 +7,8 @@
 #include <numeric>
 #include <optional>
 
-#include "model/design.hpp"
-#include "model/signals.hpp"
+#include "model/fit/design.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "config/model_file.hpp"
-#include "model/noise.hpp"
-#include "model/table.hpp"
+#include "model/noise/noise.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::model {
 

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "model/diagnose/library_builder.hpp"
-#include "model/expression.hpp"
-#include "model/moving_signals.hpp"
+#include "model/effects/expression.hpp"
+#include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {

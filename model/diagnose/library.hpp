@@ -13,7 +13,7 @@
 #include "model/diagnose/working_table.hpp"
 #include "model/effects/effect.hpp"
 #include "model/effects/shapes.hpp"
-#include "model/signals.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model {
 

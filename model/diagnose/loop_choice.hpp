@@ -7,7 +7,7 @@
 
 #include "model/diagnose/search.hpp"
 #include "model/diagnose/working_table.hpp"
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 
 namespace fogbench::model {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 
 namespace fogbench::model {
 

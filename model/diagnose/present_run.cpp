@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/moving_signals.hpp"
+#include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {

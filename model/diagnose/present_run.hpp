@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "model/diagnose/experiments.hpp"
+#include "model/next/experiments.hpp"
 
 namespace fogbench::model {
 

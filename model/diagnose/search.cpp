@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "model/diagnose/stage.hpp"
-#include "model/reduction.hpp"
+#include "model/fit/reduction.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "model/diagnose/detector.hpp"
 #include "model/diagnose/heldout.hpp"
-#include "model/gls.hpp"
+#include "model/fit/gls.hpp"
 
 namespace fogbench::model {
 

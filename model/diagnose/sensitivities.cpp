@@ -9,9 +9,9 @@
 
 #include "model/diagnose/library_builder.hpp"
 #include "model/effects/sensitivity.hpp"
-#include "model/measurement_columns.hpp"
-#include "model/median.hpp"
-#include "model/moving_signals.hpp"
+#include "model/table/measurement_columns.hpp"
+#include "model/table/median.hpp"
+#include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "model/diagnose/library_builder.hpp"
-#include "model/moving_signals.hpp"
+#include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -1,5 +1,5 @@
 #include "model/diagnose/library_builder.hpp"
-#include "model/moving_signals.hpp"
+#include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {
 

@@ -9,8 +9,8 @@
 
 #include "config/units.hpp"
 #include "model/diagnose/working_table.hpp"
-#include "model/fit.hpp"
-#include "model/median.hpp"
+#include "model/fit/fit.hpp"
+#include "model/table/median.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "model/compare.hpp"
+#include "model/compare/compare.hpp"
 #include "model/effects/effect.hpp"
-#include "model/signals.hpp"
-#include "model/table.hpp"
+#include "model/table/signals.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::model {
 

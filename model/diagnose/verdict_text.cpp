@@ -8,7 +8,7 @@
 
 #include "config/rounding.hpp"
 #include "config/units.hpp"
-#include "model/conclusions.hpp"
+#include "model/compare/conclusions.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "model/diagnose/library.hpp"
-#include "model/gls.hpp"
+#include "model/fit/gls.hpp"
 
 namespace fogbench::model {
 

@@ -8,14 +8,14 @@
 #include <numeric>
 #include <span>
 
-#include "model/condense.hpp"
-#include "model/design.hpp"
 #include "model/diagnose/thermometer.hpp"
-#include "model/measurement_columns.hpp"
-#include "model/median.hpp"
-#include "model/row_order.hpp"
-#include "model/signals.hpp"
-#include "model/stated_errors.hpp"
+#include "model/fit/design.hpp"
+#include "model/noise/stated_errors.hpp"
+#include "model/table/condense.hpp"
+#include "model/table/measurement_columns.hpp"
+#include "model/table/median.hpp"
+#include "model/table/row_order.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -15,8 +15,8 @@
 
 #include "config/model_file.hpp"
 #include "config/result.hpp"
-#include "model/noise.hpp"
-#include "model/table.hpp"
+#include "model/noise/noise.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::model {
 

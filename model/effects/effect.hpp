@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "config/result.hpp"
-#include "model/signals.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model {
 

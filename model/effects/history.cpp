@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "config/units.hpp"
-#include "model/median.hpp"
+#include "model/table/median.hpp"
 
 namespace fogbench::model::effects {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "model/signals.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model::effects {
 

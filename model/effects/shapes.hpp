@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/effects/effect.hpp"
-#include "model/signals.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model {
 

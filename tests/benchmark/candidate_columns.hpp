@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/model_file.hpp"
-#include "model/signals.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::tests {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/compare.hpp"
+#include "model/compare/compare.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "model/effects/effect.hpp"
-#include "model/noise.hpp"
+#include "model/noise/noise.hpp"
 #include "tests/benchmark/candidate_columns.hpp"
 
 namespace fogbench::tests {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "config/model_file.hpp"
-#include "model/table.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::tests {
 

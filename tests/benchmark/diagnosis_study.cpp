@@ -18,8 +18,8 @@
 #include <mutex>
 #include <thread>
 
-#include "model/heap.hpp"
-#include "model/write_csv.hpp"
+#include "model/fit/heap.hpp"
+#include "model/table/write_csv.hpp"
 #include "tests/benchmark/study_cases.hpp"
 #include "tests/benchmark/study_report.hpp"
 

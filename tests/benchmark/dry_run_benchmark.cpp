@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "daemon/run_log_reader.hpp"
 #include "daemon/session.hpp"
 #include "daemon/simulated_operator.hpp"
+#include "record/run_log_reader.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -99,7 +99,7 @@ void log_frames(benchmark::State& state) {
     block.temperature_c.push_back(21.0F);
   }
   const TemporaryStore store;
-  auto log = RunLog::open(store.path());
+  auto log = record::RunLog::open(store.path());
   if (!log || !(*log)->begin_run({}, {})) {
     state.SkipWithError("no run log");
     return;

@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "model/gls.hpp"
+#include "model/fit/gls.hpp"
 
 namespace {
 

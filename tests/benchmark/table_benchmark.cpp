@@ -11,7 +11,7 @@
 #include <iterator>
 #include <memory>
 
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "daemon/file_hash.hpp"
+#include "record/file_hash.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fogbench::cli {
@@ -22,7 +22,7 @@ class ChallengeFileTest : public testing::Test {
     secret_.scenario.hidden = {{"magnetic_hysteresis_z", -0.12, {{"width", 0.6}}}};
     secret_.visible_deg_per_h = {0.03};
     secret_.noise_deg_per_h = 0.007;
-    const std::string hash = *daemon::file_sha256(data_);
+    const std::string hash = *record::file_sha256(data_);
     text_ = sealed_text({.says = "A gyro.",
                          .software_version = "1",
                          .noise = "navigation",
@@ -73,7 +73,7 @@ TEST_F(ChallengeFileTest, NothingHiddenIsSealedToo) {
                                         .software_version = "1",
                                         .noise = "none",
                                         .procedure = "static-record",
-                                        .data_sha256 = *daemon::file_sha256(data_)},
+                                        .data_sha256 = *record::file_sha256(data_)},
                                        nothing);
   folder_.file(kSealedFile, text);
   const auto opened = open_challenge(folder_.path());
@@ -94,9 +94,9 @@ TEST_F(ChallengeFileTest, ChangedDataBreakTheSeal) {
 }
 
 TEST_F(ChallengeFileTest, ChangedDataWithTheirNewHashBreakTheSealToo) {
-  const std::string before = *daemon::file_sha256(data_);
+  const std::string before = *record::file_sha256(data_);
   folder_.file(kMeasurementsFile, "rate_deg_per_h\n0.5\n0.7\n");
-  EXPECT_THAT(changed(before, *daemon::file_sha256(data_)), HasSubstr("the seal is broken"));
+  EXPECT_THAT(changed(before, *record::file_sha256(data_)), HasSubstr("the seal is broken"));
 }
 
 TEST_F(ChallengeFileTest, AnythingChangedBesideTheSealBreaksIt) {

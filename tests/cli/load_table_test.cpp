@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/common_options.hpp"
-#include "daemon/run_log.hpp"
+#include "record/run_log.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fogbench::cli {
@@ -12,7 +12,7 @@ namespace {
 class LoadTableTest : public testing::Test {
  protected:
   LoadTableTest() : store_((folder_ / "store.db").string()) {
-    auto log = daemon::RunLog::open(store_);
+    auto log = record::RunLog::open(store_);
     EXPECT_TRUE(log);
     for (const bool completed : {true, false}) {
       EXPECT_TRUE((*log)->begin_run({}, {}));

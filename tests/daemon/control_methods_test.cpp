@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/desk_json.hpp"
-#include "daemon/run_log.hpp"
-#include "daemon/run_log_reader.hpp"
+#include "record/run_log.hpp"
+#include "record/run_log_reader.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -251,7 +251,7 @@ TEST_F(ControlMethodsTest, AnInterruptedRunIsTakenUpOrGivenUp) {
       procedure(R"({"step": "average", "duration_s": 5, "segment": "a"})"), setup_.bench, {});
   ASSERT_TRUE(planned) << planned.error().message;
   {
-    const auto log = RunLog::open(store);
+    const auto log = record::RunLog::open(store);
     ASSERT_TRUE(log) << log.error().message;
     procedures::RunHeader header;
     header.procedure = "p";
@@ -283,7 +283,7 @@ TEST_F(ControlMethodsTest, AnInterruptedRunIsTakenUpOrGivenUp) {
   result("remove", {{"job", job["job"]}});
   result("discard", {{"run", 1}});
   EXPECT_TRUE(result("status")["interrupted"].is_null());
-  const auto log = RunLogReader::open(store);
+  const auto log = record::RunLogReader::open(store);
   EXPECT_EQ((*log)->run(1)->outcome(), "interrupted");
   EXPECT_TRUE((*log)->run(1)->end) << "nobody offers it again";
 }

@@ -14,9 +14,9 @@
 #include <fstream>
 #include <random>
 
-#include "daemon/export.hpp"
 #include "daemon/resumption.hpp"
 #include "daemon/simulated_operator.hpp"
+#include "record/export.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -128,11 +128,11 @@ class KillMatrix : public testing::Test {
     daemon::Setup made = setup();
     auto planned = plan_procedure(procedure_, made.bench, {});
     if (take_up != 0) {
-      const auto log = RunLogReader::open(store);
+      const auto log = record::RunLogReader::open(store);
       planned = plan_resumption(**log, take_up, made);
     }
     EXPECT_TRUE(planned) << planned.error().message;
-    const auto log = RunLog::open(store);
+    const auto log = record::RunLog::open(store);
     DeadlyRecorder record(**log, deadly, kill_at);
     SimulatedOperator person;
     const auto session = Session::open(std::move(made), 5, record, Speed::kMaximum, person);
@@ -162,13 +162,13 @@ class KillMatrix : public testing::Test {
   }
 
   static std::vector<Point> points_of(const fs::path& store, std::int64_t run) {
-    const auto log = RunLogReader::open(store);
+    const auto log = record::RunLogReader::open(store);
     EXPECT_TRUE(log) << log.error().message;
-    auto points = valid_points(**log, run, true);
+    auto points = record::valid_points(**log, run, true);
     return points ? std::move(*points) : std::vector<Point>{};
   }
   static std::int64_t last_run(const fs::path& store) {
-    const auto log = RunLogReader::open(store);
+    const auto log = record::RunLogReader::open(store);
     const auto runs = (*log)->runs();
     return runs && !runs->empty() ? runs->back().run : 0;
   }
@@ -232,7 +232,7 @@ class KillMatrix : public testing::Test {
       last = last_run(store);
       if (!killed) break;
     }
-    const auto log = RunLogReader::open(store);
+    const auto log = record::RunLogReader::open(store);
     const auto stored = (*log)->run(last);
     ASSERT_TRUE(stored);
     // The last record is the end itself: nothing is left to take up.
@@ -300,7 +300,7 @@ TEST_F(KillMatrix, AJournalCutAnywhereIsReadUpToTheCut) {
     write(cut.string(), store_bytes);
     write(cut.string() + "-wal", std::string_view(wal).substr(0, length));
     fs::remove(cut.string() + "-shm");
-    const auto log = RunLogReader::open(cut);
+    const auto log = record::RunLogReader::open(cut);
     ASSERT_TRUE(log) << length << " of " << wal.size() << " bytes: " << log.error().message;
     const auto interrupted = interrupted_runs(**log, made);
     ASSERT_TRUE(interrupted) << interrupted.error().message;

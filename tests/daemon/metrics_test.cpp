@@ -13,7 +13,7 @@
 #include <set>
 #include <sstream>
 
-#include "daemon/store.hpp"
+#include "record/store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fogbench::daemon {
@@ -148,7 +148,7 @@ TEST(Metrics, ANameMayHoldAnything) {
 
 TEST(Metrics, EveryValueOfTheRunLogIsAMetric) {
   const std::string text = metrics_text("simulated", running(), {});
-  for (const MonitorColumn& column : monitor_columns()) {
+  for (const record::MonitorColumn& column : record::monitor_columns()) {
     if (column.name == "time_s" || std::isnan(column.value(*running().values))) continue;
     EXPECT_THAT(text, HasSubstr(fmt::format("\nfogbench_{} ", column.name)));
   }

@@ -13,9 +13,8 @@
 
 #include "daemon/desk_operator.hpp"
 #include "daemon/desk_recorder.hpp"
-#include "daemon/names.hpp"
-#include "daemon/run_log.hpp"
-#include "daemon/run_log_reader.hpp"
+#include "record/run_log.hpp"
+#include "record/run_log_reader.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -87,7 +86,7 @@ TEST(Month, OfNightsWithFaultsAndPromptsLeavesNothingBehindAndLosesNoRun) {
   }
 
   const std::filesystem::path store = folder / "store.db";
-  const auto log = RunLog::open(store);
+  const auto log = record::RunLog::open(store);
   ASSERT_TRUE(log) << log.error().message;
   RunDesk desk;
   DeskRecorder record(**log, desk);
@@ -149,13 +148,13 @@ TEST(Month, OfNightsWithFaultsAndPromptsLeavesNothingBehindAndLosesNoRun) {
   EXPECT_LT(grown_mb, 5.0) << "from the fifth night to the thirtieth";
   EXPECT_EQ(descriptors(), early_descriptors);
 
-  const auto reader = RunLogReader::open(store);
+  const auto reader = record::RunLogReader::open(store);
   ASSERT_TRUE(reader) << reader.error().message;
   const auto stored = (*reader)->runs();
   ASSERT_TRUE(stored) << stored.error().message;
   EXPECT_EQ(static_cast<int>(stored->size()), runs - outcomes["not begun"]);
   std::map<std::string, int> recorded;
-  for (const StoredRun& run : *stored) ++recorded[run.outcome()];
+  for (const record::StoredRun& run : *stored) ++recorded[run.outcome()];
   for (const char* outcome : {"completed", "aborted", "failed", "interrupted"}) {
     EXPECT_EQ(recorded[outcome], outcomes[outcome]) << outcome;
   }

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/run_log.hpp"
+#include "record/run_log.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -21,7 +21,7 @@ class QueueFileTest : public testing::Test {
         {(ready / "benches/simulated.json").string(), (ready / "scenarios/clean.json").string()});
     EXPECT_TRUE(setup) << setup.error().message;
     setup_ = std::move(*setup);
-    EXPECT_TRUE(RunLog::open(store_));
+    EXPECT_TRUE(record::RunLog::open(store_));
   }
 
   void enqueue(RunDesk& desk, const std::string& procedure, const Parameters& set) {

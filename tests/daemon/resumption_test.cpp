@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "daemon/run_log.hpp"
 #include "daemon/simulated_operator.hpp"
+#include "record/run_log.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -42,7 +42,7 @@ class ResumptionTest : public testing::Test {
 
   void interrupt(const std::string& gyro = "SIM-FOG-1") {
     header_.gyro_serial_number = gyro;
-    const auto log = RunLog::open(store_);
+    const auto log = record::RunLog::open(store_);
     ASSERT_TRUE(log) << log.error().message;
     ASSERT_TRUE((*log)->begin_run(header_, {{"gyro", identity_, gyro, "", ""}}));
     ASSERT_TRUE((*log)->step_started("1", "average", 0.0));
@@ -55,7 +55,7 @@ class ResumptionTest : public testing::Test {
     ASSERT_TRUE((*log)->step_started("2", "average", 5.0));
   }
   Result<PlannedProcedure> plan(std::int64_t run = 1) {
-    const auto log = RunLogReader::open(store_);
+    const auto log = record::RunLogReader::open(store_);
     EXPECT_TRUE(log) << log.error().message;
     return plan_resumption(**log, run, setup_);
   }
@@ -67,7 +67,7 @@ class ResumptionTest : public testing::Test {
   }
 
   std::int64_t offered() {
-    const auto log = RunLogReader::open(store_);
+    const auto log = record::RunLogReader::open(store_);
     const auto runs = interrupted_runs(**log, setup_);
     EXPECT_TRUE(runs) << runs.error().message;
     return runs && !runs->empty() ? runs->back().run : 0;
@@ -147,7 +147,7 @@ TEST_F(ResumptionTest, OtherInstrumentsThanThoseOfTheRecordDoNotGoOn) {
   interrupt();
   const auto done = take_up(2);
   ASSERT_TRUE(done) << done.error().message;
-  const auto log = RunLogReader::open(store_);
+  const auto log = record::RunLogReader::open(store_);
   const auto points = (*log)->chain_points(done->run);
   ASSERT_TRUE(points);
   ASSERT_EQ(points->size(), 2U);
@@ -168,7 +168,7 @@ TEST_F(ResumptionTest, GoesOnWithTheGyroOfTheRecordWhateverTheDaemonsIs) {
   ASSERT_TRUE(session) << session.error().message;
   const auto done = (*session)->run(*planned);
   ASSERT_TRUE(done) << done.error().message;
-  const auto log = RunLogReader::open(store_);
+  const auto log = record::RunLogReader::open(store_);
   EXPECT_EQ((*log)->run(done->run)->header.gyro_serial_number, "FOG-42");
   const auto instruments = (*log)->instruments(done->run);
   EXPECT_TRUE(std::any_of(instruments->begin(), instruments->end(), [](const auto& instrument) {
@@ -193,7 +193,7 @@ TEST_F(ResumptionTest, TwoRunsNeverTakeUpTheSame) {
 TEST_F(ResumptionTest, ARunThatNobodyEndedIsOfferedWhateverCameAfterIt) {
   interrupt();
   interrupt();
-  const auto log = RunLog::open(store_);
+  const auto log = record::RunLog::open(store_);
   ASSERT_TRUE((*log)->begin_run(header_, {}));
   ASSERT_TRUE(
       (*log)->end_run({procedures::RunOutcome::kCompleted, "all steps done", true, "", {}}));
@@ -206,7 +206,7 @@ TEST_F(ResumptionTest, ARunThatNobodyEndedIsOfferedWhateverCameAfterIt) {
 
 TEST_F(ResumptionTest, WhatHasMeasuredNothingAndHasNoStepLeftIsBegunAnew) {
   {
-    const auto log = RunLog::open(store_);
+    const auto log = record::RunLog::open(store_);
     ASSERT_TRUE((*log)->begin_run(header_, {}));
     for (const char* path : {"1", "2"}) {
       ASSERT_TRUE((*log)->step_started(path, "a step", 0.0));
@@ -219,7 +219,7 @@ TEST_F(ResumptionTest, WhatHasMeasuredNothingAndHasNoStepLeftIsBegunAnew) {
 
 TEST_F(ResumptionTest, WhatAnotherProgramWritesIsNotInterrupted) {
   interrupt();
-  auto other = RunLog::open(store_);
+  auto other = record::RunLog::open(store_);
   ASSERT_TRUE(other) << other.error().message;
   ASSERT_TRUE((*other)->begin_run(header_, {}));
   EXPECT_EQ(offered(), 1) << "run 2 is under way: it neither waits nor hides what does";
@@ -234,9 +234,9 @@ TEST_F(ResumptionTest, WhatAnotherProgramWritesIsNotInterrupted) {
 }
 
 TEST_F(ResumptionTest, ARunThatEndsIsHeldNoLonger) {
-  auto log = RunLog::open(store_);
+  auto log = record::RunLog::open(store_);
   ASSERT_TRUE((*log)->begin_run(header_, {}));
-  const auto reader = RunLogReader::open(store_);
+  const auto reader = record::RunLogReader::open(store_);
   EXPECT_TRUE((*reader)->being_written(1));
   EXPECT_FALSE((*reader)->being_written(2));
   ASSERT_TRUE((*log)->end_run({procedures::RunOutcome::kAborted, "aborted", true, "", {}}));
@@ -256,7 +256,7 @@ TEST_F(ResumptionTest, ADryRunOfARealBenchHidesNothingAndIsNotOffered) {
 TEST_F(ResumptionTest, TheGapKnowsThatTheClockWasSet) {
   interrupt();
   {
-    const auto log = RunLog::open(store_);
+    const auto log = record::RunLog::open(store_);
     ASSERT_TRUE((*log)->begin_run(header_, {{"gyro", identity_, "SIM-FOG-1", "", ""}}));
     ASSERT_TRUE((*log)->step_started("1", "average", 0.0));
     ASSERT_TRUE((*log)->event(3.0, "warning", "set forward", R"({"clock_step_s":3600.000})"));
@@ -270,7 +270,7 @@ TEST_F(ResumptionTest, TheGapKnowsThatTheClockWasSet) {
   header_.started_at = "2026-01-01T01:00:04Z";
   header_.continues = procedures::Continuation{.run = 2, .first_step = "1"};
   interrupt();
-  const auto log = RunLogReader::open(store_);
+  const auto log = record::RunLogReader::open(store_);
   const auto points = (*log)->chain_points(3);
   ASSERT_TRUE(points) << points.error().message;
   ASSERT_EQ(points->size(), 1U);

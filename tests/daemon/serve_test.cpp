@@ -69,7 +69,7 @@ TEST(ServeDeathTest, AnAbortThatAnInstrumentHoldsUpIsForcedWhenItsTimeIsOver) {
   EXPECT_EXIT(serve_and_abort(), testing::ExitedWithCode(4),
               "no safe state within 0.3 s of the abort: ending at once, the bench is NOT in its "
               "safe state; a new start begins with it\n$");
-  const auto log = RunLogReader::open(store);
+  const auto log = record::RunLogReader::open(store);
   ASSERT_TRUE(log) << log.error().message;
   const auto left = interrupted_runs(**log, *setup);
   ASSERT_TRUE(left && left->size() == 1) << "the next start offers it";

@@ -1,4 +1,4 @@
-#include "model/allan.hpp"
+#include "model/noise/allan.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

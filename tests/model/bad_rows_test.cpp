@@ -1,4 +1,4 @@
-#include "model/bad_rows.hpp"
+#include "model/table/bad_rows.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "model/compare.hpp"
+#include "model/compare/compare.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

@@ -18,7 +18,7 @@
 #include <iostream>
 #include <utility>
 
-#include "model/compare.hpp"
+#include "model/compare/compare.hpp"
 #include "model/diagnose/verdict_text.hpp"
 #include "tests/model/models.hpp"
 #include "tests/support/diagnosis_trial.hpp"

@@ -1,4 +1,4 @@
-#include "model/compare.hpp"
+#include "model/compare/compare.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "model/region_noise.hpp"
+#include "model/compare/region_noise.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

@@ -1,12 +1,12 @@
-#include "model/conformity.hpp"
+#include "model/compare/conformity.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "model/contrast.hpp"
-#include "model/table.hpp"
+#include "model/compare/contrast.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::model {
 namespace {

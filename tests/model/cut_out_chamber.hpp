@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

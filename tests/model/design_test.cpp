@@ -1,6 +1,6 @@
 // The derivatives that the fit uses, against finite differences of another order and step.
 
-#include "model/design.hpp"
+#include "model/fit/design.hpp"
 
 #include <gtest/gtest.h>
 

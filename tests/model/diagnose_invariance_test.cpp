@@ -13,7 +13,7 @@
 #include "model/diagnose/search.hpp"
 #include "model/diagnose/verdict_text.hpp"
 #include "model/diagnose/working_table.hpp"
-#include "model/signals.hpp"
+#include "model/table/signals.hpp"
 #include "tests/support/diagnosis_trial.hpp"
 
 namespace fogbench::model {

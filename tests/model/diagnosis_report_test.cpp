@@ -1,4 +1,4 @@
-#include "model/diagnose/diagnosis_report.hpp"
+#include "model/report/diagnosis_report.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -10,8 +10,8 @@
 #include <fstream>
 #include <random>
 
-#include "model/report_plots.hpp"
-#include "model/svg_plot.hpp"
+#include "model/report/report_plots.hpp"
+#include "model/report/svg_plot.hpp"
 #include "tests/model/models.hpp"
 #include "tests/support/markup.hpp"
 

@@ -1,8 +1,8 @@
-#include "model/expression.hpp"
+#include "model/effects/expression.hpp"
 
 #include <gtest/gtest.h>
 
-#include "model/table.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 #include "tests/model/cut_out_chamber.hpp"
 
 namespace fogbench::model {

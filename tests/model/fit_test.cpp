@@ -1,4 +1,4 @@
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

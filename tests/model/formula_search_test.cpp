@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "model/diagnose/formula_parts.hpp"
-#include "model/expression.hpp"
+#include "model/effects/expression.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

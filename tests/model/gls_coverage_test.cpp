@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "model/gls.hpp"
+#include "model/fit/gls.hpp"
 #include "tests/model/noise_generator.hpp"
 
 namespace fogbench::model {

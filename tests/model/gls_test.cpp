@@ -1,4 +1,4 @@
-#include "model/gls.hpp"
+#include "model/fit/gls.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "model/kernels.hpp"
+#include "model/fit/kernels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "model/loops.hpp"
+#include "model/compare/loops.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

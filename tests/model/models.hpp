@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "config/model_file.hpp"
-#include "model/table.hpp"
+#include "model/table/table.hpp"
 #include "tests/model/noise_generator.hpp"
 
 namespace fogbench::model {

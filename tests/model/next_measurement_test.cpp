@@ -1,7 +1,7 @@
 // What to measure next: for the classical confusions the computed recommendation is the experiment
 // that engineers know, and what cannot tell effects apart is never recommended.
 
-#include "model/diagnose/next_measurement.hpp"
+#include "model/next/next_measurement.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <cmath>
 #include <set>
 
-#include "model/diagnose/bench_schedule.hpp"
-#include "model/diagnose/separation.hpp"
 #include "model/effects/effect.hpp"
+#include "model/next/bench_schedule.hpp"
+#include "model/next/separation.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

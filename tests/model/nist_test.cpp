@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 #include "tests/support/source_tree.hpp"
 
 namespace fogbench::model {

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "model/noise.hpp"
-#include "model/noise_prior.hpp"
+#include "model/noise/noise.hpp"
+#include "model/noise/noise_prior.hpp"
 
 namespace fogbench::model {
 

@@ -1,11 +1,11 @@
-#include "model/noise_prior.hpp"
+#include "model/noise/noise_prior.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "model/gls.hpp"
+#include "model/fit/gls.hpp"
 #include "tests/model/noise_generator.hpp"
 
 namespace fogbench::model {

@@ -1,4 +1,4 @@
-#include "model/noise.hpp"
+#include "model/noise/noise.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "model/window_geometry.hpp"
+#include "model/noise/window_geometry.hpp"
 #include "tests/model/noise_generator.hpp"
 
 namespace fogbench::model {

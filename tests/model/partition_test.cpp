@@ -1,4 +1,4 @@
-#include "model/partition.hpp"
+#include "model/compare/partition.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "model/plausible_noise.hpp"
+#include "model/noise/plausible_noise.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "model/table.hpp"
-#include "model/write_csv.hpp"
+#include "model/table/table.hpp"
+#include "model/table/write_csv.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fogbench::model {

@@ -1,4 +1,4 @@
-#include "model/repeatability.hpp"
+#include "model/compare/repeatability.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "model/report.hpp"
+#include "model/report/report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/svg_plot.hpp"
+#include "model/report/svg_plot.hpp"
 #include "tests/model/models.hpp"
 #include "tests/support/markup.hpp"
 

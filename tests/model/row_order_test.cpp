@@ -1,4 +1,4 @@
-#include "model/row_order.hpp"
+#include "model/table/row_order.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 
 #include "model/diagnose/diagnose.hpp"
 #include "model/diagnose/verdict_text.hpp"
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

@@ -1,7 +1,7 @@
 // The distance between two explanations, against least squares written out, and the bench on paper
 // against its own heat balance.
 
-#include "model/diagnose/separation.hpp"
+#include "model/next/separation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,9 +7,9 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "model/compensate.hpp"
 #include "model/effects/effect.hpp"
-#include "model/fit.hpp"
+#include "model/fit/compensate.hpp"
+#include "model/fit/fit.hpp"
 #include "tests/model/cut_out_chamber.hpp"
 
 namespace fogbench::model {

@@ -1,4 +1,4 @@
-#include "model/stated_errors.hpp"
+#include "model/noise/stated_errors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "model/static_record.hpp"
+#include "model/noise/static_record.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "model/table.hpp"
+#include "model/table/table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

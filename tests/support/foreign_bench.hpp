@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "model/table.hpp"
+#include "model/table/table.hpp"
 #include "tests/support/foreign_effects.hpp"
 #include "tests/support/foreign_noise.hpp"
 #include "tests/support/foreign_world.hpp"

@@ -16,12 +16,12 @@
 #include <string>
 #include <vector>
 
+#include "acceptance/run_table.hpp"
 #include "config/model_file.hpp"
-#include "daemon/run_log_reader.hpp"
-#include "daemon/run_table.hpp"
 #include "daemon/session.hpp"
 #include "daemon/simulated_operator.hpp"
-#include "model/fit.hpp"
+#include "model/fit/fit.hpp"
+#include "record/run_log_reader.hpp"
 #include "tests/model/noise_generator.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -53,15 +53,15 @@ model::Table measure(const std::string& procedure, const daemon::Parameters& par
   const auto summary = (*session)->run(*plan);
   EXPECT_TRUE(summary) << summary.error().message;
   EXPECT_EQ(summary->end.outcome, procedures::RunOutcome::kCompleted) << summary->end.reason;
-  auto reader = daemon::RunLogReader::open(folder / "store.db");
+  auto reader = record::RunLogReader::open(folder / "store.db");
   EXPECT_TRUE(reader) << reader.error().message;
   const auto stored = (*reader)->points(summary->run);
   EXPECT_TRUE(stored) << stored.error().message;
   std::vector<procedures::Point> points;
-  for (const daemon::StoredPoint& p : *stored) {
+  for (const record::StoredPoint& p : *stored) {
     if (p.void_because.empty()) points.push_back(p.point);
   }
-  return daemon::to_table(points);
+  return acceptance::to_table(points);
 }
 
 struct Share {

@@ -7,7 +7,6 @@
 
 #include "daemon/desk_operator.hpp"
 #include "daemon/desk_recorder.hpp"
-#include "daemon/names.hpp"
 #include "drivers/open_bench.hpp"
 #include "procedures/expand.hpp"
 #include "simulator/simulated_bench.hpp"
@@ -93,7 +92,7 @@ Trial run_with(const std::optional<config::FaultSpec>& fault, const config::Benc
   if (summary) {
     trial.summary = *summary;
     const auto shown = desk.view().last_run;
-    EXPECT_EQ(shown->outcome, daemon::name_of(summary->end.outcome));
+    EXPECT_EQ(shown->outcome, name_of(summary->end.outcome));
     EXPECT_EQ(shown->safe_state_reached, summary->end.safe_state_reached);
     EXPECT_EQ(shown->points, summary->points);
   }

@@ -19,11 +19,11 @@
 #include <sstream>
 #include <thread>
 
-#include "daemon/run_log.hpp"
 #include "daemon/session.hpp"
 #include "daemon/simulated_operator.hpp"
 #include "drivers/open_bench.hpp"
 #include "drivers/open_ports.hpp"
+#include "record/run_log.hpp"
 #include "simulator/simulated_bench.hpp"
 #include "tests/system/fogbench.hpp"
 
@@ -102,7 +102,7 @@ TEST_F(GyroSoak, LosesAndRepeatsNoFrameOnBusyCores) {
   const double frame_rate_hz = bench->gyro->frame_rate_hz();
   ASSERT_EQ(frame_rate_hz, 1000.0);
   {
-    auto log = daemon::RunLog::open(store());
+    auto log = record::RunLog::open(store());
     ASSERT_TRUE(log) << log.error().message;
     procedures::RunEngine engine(setup->bench, *bench, clock, nobody, **log);
     procedures::RunHeader header;

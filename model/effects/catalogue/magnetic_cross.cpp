@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "model/effects/function_effect.hpp"
-#include "model/moving_signals.hpp"
+#include "model/table/moving_signals.hpp"
 
 namespace fogbench::model::effects {
 namespace {

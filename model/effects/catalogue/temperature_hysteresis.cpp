@@ -6,7 +6,7 @@
 
 #include "model/effects/function_effect.hpp"
 #include "model/effects/history.hpp"
-#include "model/moving_signals.hpp"
+#include "model/table/moving_signals.hpp"
 
 namespace fogbench::model::effects {
 namespace {

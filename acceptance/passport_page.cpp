@@ -1,0 +1,283 @@
+// The page of a passport. One file, nothing from outside; prints on A4.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "acceptance/passport_writer.hpp"
+#include "model/report/report_page.hpp"
+#include "model/report/svg_plot.hpp"
+
+namespace fogbench::acceptance {
+using model::Conformity;
+using model::escaped;
+
+namespace {
+
+constexpr auto kPassportStyle = R"(
+@page { size: A4; margin: 14mm 12mm; }
+.dots.first { stroke: var(--point); } .joint.first.line { stroke: var(--point); }
+.marks.second { fill: #fff; fill-opacity: 1; stroke: var(--fail); }
+.joint.second.line { stroke: var(--fail); stroke-dasharray: 6 3; }
+.marks.line { display: none; }
+.verdict h2 { margin: .4rem 0; }
+.verdict.open { border-color: var(--soft); }
+td.pass { color: var(--point); } td.fail { color: var(--fail); font-weight: 600; }
+td.hash { font: 11px/1.35 "DejaVu Sans Mono", monospace; white-space: normal; word-break: break-all; }
+td.free { white-space: normal; overflow-wrap: anywhere; }
+td.text:first-child, th { white-space: normal; }
+table.full { width: 100%; } table.origin td { text-align: left; }
+table.signatures { width: 100%; margin-top: .5rem; break-inside: avoid; }
+table.signatures td { border: 0; padding: 1.6rem 1.2rem 0 0; vertical-align: bottom; width: 25%; }
+table.signatures div { border-bottom: 1px solid var(--ink); }
+table.signatures tr.under td { color: var(--soft); font-size: .8rem; padding-top: .1rem;
+                               text-align: left; }
+@media print {
+  html { font-size: 11px; } h2 { margin-top: 1.4rem; } th, td { padding: .2rem .6rem .2rem 0; }
+  .wide { overflow: visible; } .plots { grid-template-columns: 1fr 1fr; } section { break-inside: auto; }
+  section.together { break-inside: avoid; }
+}
+)";
+
+const char* kind_of(Conformity verdict) {
+  return verdict == Conformity::kPass ? "pass" : verdict == Conformity::kFail ? "fail" : "";
+}
+
+/// Writes the page in one language.
+class Page : public PassportWriter {
+ public:
+  using PassportWriter::PassportWriter;
+
+  std::string html() {
+    const std::string title = fmt::format("{} {}", say(Text::kTitle), acceptance_.gyro());
+    out_ = model::page_start(title, say(Text::kLanguageCode), kPassportStyle);
+    out_ += fmt::format("<h1>{}</h1>\n<p class=\"sub\">{} {} &middot; fogbench {}</p>\n",
+                        escaped(title), say(Text::kIssued), date(passport_.issued_at),
+                        passport_.software_version);
+    verdict();
+    limits();
+    repeatability();
+    coefficients();
+    thermal();
+    magnetic();
+    plots();
+    noise();
+    return out_ + passport_origin(passport_, language_) + model::page_end();
+  }
+
+ private:
+  void verdict() {
+    const Conformity overall = passport_.judged.overall;
+    const bool pass = overall == Conformity::kPass, fail = overall == Conformity::kFail;
+    out_ += fmt::format("<div class=\"verdict{}\">\n<h2>{}</h2>\n",
+                        fail   ? " fails"
+                        : pass ? ""
+                               : " open",
+                        say(pass   ? Text::kOverallPass
+                            : fail ? Text::kOverallFail
+                                   : Text::kOverallIndeterminate));
+    if (!passport_.remarks.empty()) {
+      out_ += fmt::format("<p>{}</p>\n<ul>\n", say(Text::kRemarks));
+      for (const Remark& remark : passport_.remarks) {
+        out_ += fmt::format("<li>{}</li>\n", escaped(remark_text(remark, language_)));
+      }
+      out_ += "</ul>\n";
+    }
+    out_ += "</div>\n";
+  }
+
+  void limits() {
+    section(Text::kLimits);
+    table({say(Text::kQuantity), say(Text::kUnit), say(Text::kTest), say(Text::kMinimum),
+           say(Text::kMaximum), say(Text::kValue), say(Text::kUncertainty), say(Text::kVerdict)},
+          3);
+    for (const model::Judgement& r : passport_.judged.results) {
+      const bool missing = r.test.empty();
+      auto [value, uncertainty] = rounded(r.value, r.expanded_uncertainty);
+      if (missing) value = say(Text::kMissing);
+      row({name(r.quantity), unit(r.unit),
+           missing ? say(Text::kTooFewTests, r.tests_measured, r.tests_expected) : escaped(r.test),
+           number(r.minimum), number(r.maximum), value, uncertainty,
+           std::string(verdict_name(r.verdict, language_))},
+          kind_of(r.verdict));
+    }
+    end_table();
+    const config::LimitsConfig& config = passport_.limits;
+    note(fmt::format("&laquo;{}&raquo;{}{}", escaped(config.name),
+                     config.description.empty() ? "" : ": ", escaped(config.description)));
+    note(say(Text::kRule, number(passport_.judged.coverage_factor)));
+    end_section();
+  }
+
+  void repeatability() {
+    if (passport_.judged.repeats.empty()) return;
+    section(Text::kRepeatability);
+    table({say(Text::kQuantity), say(Text::kUnit), say(Text::kTest), say(Text::kValue),
+           say(Text::kDifference), say(Text::kUncertainty), say(Text::kLimit), say(Text::kVerdict)},
+          3);
+    for (const model::Repeat& r : passport_.judged.repeats) {
+      const bool missing = std::isnan(r.difference);
+      const auto [difference, uncertainty] = rounded(r.difference, r.expanded_uncertainty);
+      const std::string says = r.verdict
+                                   ? std::string(verdict_name(*r.verdict, language_))
+                                   : say(r.significant ? Text::kBeyondNoise : Text::kWithinNoise);
+      row({name(r.quantity), unit(r.unit),
+           missing ? say(Text::kMissing) : fmt::format("{} &rarr; {}", r.test_a, r.test_b),
+           missing ? ""
+                   : fmt::format("{} &rarr; {}", rounded(r.value_a, r.expanded_uncertainty).first,
+                                 rounded(r.value_b, r.expanded_uncertainty).first),
+           difference, uncertainty, number(r.limit), says},
+          r.verdict ? kind_of(*r.verdict) : "");
+    }
+    end_table();
+    for (const model::RunChange& change : acceptance_.changes) {
+      note(escaped(change_text(change, passport_.judged.coverage_factor, language_)));
+    }
+    end_section();
+  }
+
+  void coefficients() {
+    const auto fitted = std::find_if(acceptance_.tests.begin(), acceptance_.tests.end(),
+                                     [](const TestResults& test) { return test.fit.has_value(); });
+    if (fitted == acceptance_.tests.end()) return;
+    section(Text::kCoefficients, true);
+    std::vector<std::string> heads{say(Text::kQuantity), say(Text::kUnit)}, ids;
+    for (const TestResults& test : acceptance_.tests) {
+      if (!test.fit) continue;
+      heads.push_back(fmt::format("{} {}, &plusmn; U", say(Text::kTest), escaped(test.name)));
+      for (const model::Estimate& e : test.fit->estimates) {
+        if (std::find(ids.begin(), ids.end(), e.name) == ids.end()) ids.push_back(e.name);
+      }
+    }
+    table(heads, 2, "");
+    for (const std::string& id : ids) row(coefficient(id));
+    end_table();
+    for (const TestResults& test : acceptance_.tests) {
+      if (!test.fit) continue;
+      note(fmt::format("{} {}: {} &laquo;{}&raquo;, {} {}, RMS {} {}", say(Text::kTest),
+                       escaped(test.name), say(Text::kModel), escaped(test.model),
+                       test.fit->rows.size(), say(Text::kPointsOfFit), number(test.fit->rms),
+                       unit("deg/h")));
+    }
+    note(say(Text::kUncertaintyScope, number(fitted->fit->fitted.reference_temperature_c)));
+    end_section();
+  }
+
+  /// Its row: name, unit, and what each test's fit made of it.
+  std::vector<std::string> coefficient(const std::string& id) const {
+    std::vector<std::string> cells{name(id), ""};
+    for (const TestResults& test : acceptance_.tests) {
+      if (!test.fit) continue;
+      cells.emplace_back();
+      for (const model::Estimate& e : test.fit->estimates) {
+        if (e.name != id) continue;
+        cells[1] = unit(e.unit);
+        const double u =
+            0.5 * e.coverage_factor * passport_.judged.coverage_factor * e.standard_error;
+        cells.back() =
+            std::isnan(e.value) ? say(Text::kNotDetermined) : with_uncertainty(e.value, u);
+      }
+    }
+    return cells;
+  }
+
+  void thermal() {
+    if (std::all_of(acceptance_.tests.begin(), acceptance_.tests.end(),
+                    [](const TestResults& test) { return test.set_points.empty(); })) {
+      return;
+    }
+    section(Text::kThermal, true);
+    table({say(Text::kTest), say(Text::kSetPoint), say(Text::kTemperature), say(Text::kAverages),
+           say(Text::kDeviation), say(Text::kSigma)},
+          1, "");
+    for (const TestResults& test : acceptance_.tests) {
+      for (const SetPoint& p : test.set_points) {
+        row({escaped(test.name), number(p.target_c),
+             localised(fmt::format("{:.2f}", p.temperature_c), language_),
+             std::to_string(p.averages),
+             with_uncertainty(p.deviation_deg_per_h.value, expanded(p.deviation_deg_per_h)),
+             localised(fmt::format("{:.2g}", p.sigma_deg_per_h), language_)});
+      }
+    }
+    end_table();
+    end_section();
+  }
+
+  /// K with the uncertainty that the fit's noise gives it.
+  std::string k_of(const TestResults& test, char axis) const {
+    for (const model::Measured& m : acceptance_.measured) {
+      if (m.test != test.name || m.quantity != fmt::format("K_{}", axis)) continue;
+      return with_uncertainty(m.value, expanded_uncertainty(m, passport_.judged.coverage_factor));
+    }
+    return "&ndash;";
+  }
+
+  void magnetic() {
+    if (std::all_of(acceptance_.tests.begin(), acceptance_.tests.end(),
+                    [](const TestResults& test) { return test.results.sweeps.empty(); })) {
+      return;
+    }
+    section(Text::kMagnetic, true);
+    table({say(Text::kTest), say(Text::kAxis), say(Text::kK), say(Text::kClosure)}, 2, "");
+    for (const TestResults& test : acceptance_.tests) {
+      std::string done;
+      for (const SweepResult& sweep : test.results.sweeps) {
+        if (done.find(sweep.axis) != std::string::npos) continue;
+        done += sweep.axis;
+        row({escaped(test.name), fmt::format("O{}", static_cast<char>(sweep.axis - 'x' + 'X')),
+             k_of(test, sweep.axis),
+             with_uncertainty(sweep.closure_deg_per_h.value, expanded(sweep.closure_deg_per_h))});
+      }
+    }
+    end_table();
+    note(say(Text::kClosureScope));
+    end_section();
+  }
+
+  void plots() {
+    const std::string figures = passport_plots(acceptance_, language_);
+    if (figures.empty()) return;
+    section(Text::kPlots, true);
+    out_ += figures;
+    end_section();
+  }
+
+  void noise() {
+    section(Text::kNoise, true);
+    if (acceptance_.noise.empty()) note(say(Text::kNoNoiseRecord));
+    for (const NoiseTerms& terms : acceptance_.noise) {
+      note(say(Text::kNoiseRecord, terms.samples, number(terms.interval_s), terms.stretch.test,
+               escaped(terms.stretch.segment)));
+      if (!terms.fit) continue;
+      const config::NoiseCoefficients& n = terms.fit->noise;
+      const config::NoiseCoefficients& e = terms.fit->standard_error;
+      table({say(Text::kNoiseTerm), say(Text::kUnit), say(Text::kValue), say(Text::kUncertainty)},
+            2, "");
+      const auto term = [&](const std::string& name, const char* in, double value, double error) {
+        const auto [v, u] = rounded(value, passport_.judged.coverage_factor * error);
+        const bool seen = value > 0.0;
+        row({name, unit(in), seen ? v : say(Text::kNotSeen), seen ? u : ""});
+      };
+      term(name("angle_random_walk"), "deg/sqrt(h)", n.angle_random_walk_deg_per_sqrt_h,
+           e.angle_random_walk_deg_per_sqrt_h);
+      term(name("bias_instability"), "deg/h", n.bias_instability_deg_per_h,
+           e.bias_instability_deg_per_h);
+      term(name("rate_random_walk"), "deg/h/sqrt(h)", n.rate_random_walk_deg_per_h_per_sqrt_h,
+           e.rate_random_walk_deg_per_h_per_sqrt_h);
+      term(say(Text::kQuantisation), "deg", n.quantisation_deg, e.quantisation_deg);
+      end_table();
+    }
+    end_section();
+  }
+};
+
+}  // namespace
+
+std::string passport_html(const Passport& passport, Language language) {
+  return Page(passport, language).html();
+}
+
+}  // namespace fogbench::acceptance

@@ -1,0 +1,112 @@
+#include "model/effects/expression.hpp"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <limits>
+#include <numbers>
+#include <string_view>
+
+namespace fogbench::model {
+namespace {
+
+constexpr std::size_t kShown = 200;
+
+void define_constants(mu::Parser& parser) {
+  parser.DefineConst("pi", std::numbers::pi);
+  parser.DefineConst("e", std::numbers::e);
+}
+
+/// Whether a single '=' stands anywhere: the parser would take it for an assignment and write into
+/// the table's columns.
+bool assigns(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    const bool follows = i > 0 && std::string_view("=<>!").find(text[i - 1]) != text.npos;
+    const bool leads = i + 1 < text.size() && text[i + 1] == '=';
+    if (!follows && !leads) return true;
+  }
+  return false;
+}
+
+/// For GetUsedVar, which wants an address for every name.
+double* any_variable(const char*, void* place) {
+  return static_cast<double*>(place);
+}
+
+}  // namespace
+
+Result<Expression> Expression::parse(const std::string& term, const std::string& text,
+                                     const std::set<std::string>& parameters,
+                                     const Signals& signals) {
+  const auto bad = [&](const std::string& what) {
+    return Error{ErrorCode::kBadInput, fmt::format("term {}: {}", term, what)};
+  };
+  // A text of thousands of characters would drown what is said about it.
+  const std::string shown = text.size() > kShown ? text.substr(0, kShown) + "..." : text;
+  if (assigns(text)) {
+    return bad(fmt::format("found an assignment in '{}', expected a formula; equal is ==", shown));
+  }
+  Expression expression;
+  expression.text_ = text;
+  std::set<std::string> used;
+  try {
+    double place = 1.0;
+    mu::Parser parser;
+    define_constants(parser);
+    // A parameter may be called e or pi: then it is the parameter.
+    for (const std::string& name : parameters) parser.DefineVar(name, &place);
+    parser.SetVarFactory(any_variable, &place);
+    parser.SetExpr(text);
+    for (const auto& [name, address] : parser.GetUsedVar()) used.insert(name);
+    parser.Eval();
+    if (parser.GetNumResults() != 1) {
+      return bad(
+          fmt::format("found {} values in '{}', expected one", parser.GetNumResults(), shown));
+    }
+  } catch (const mu::ParserError& error) {
+    return bad(fmt::format("found '{}', expected a formula: {}", shown, error.GetMsg()));
+  }
+  for (const std::string& name : used) {
+    const bool is_signal = signals.table().has(name) || signals.available(name);
+    if (parameters.contains(name)) {
+      if (is_signal) {
+        return bad(
+            fmt::format("found the parameter {} that is also a column, expected two names", name));
+      }
+      expression.parameters_.push_back(name);
+    } else if (is_signal) {
+      expression.signals_.push_back(name);
+    } else {
+      return bad(
+          fmt::format("found the name '{}' in '{}', expected a column or one of the term's "
+                      "parameters ({})",
+                      name, shown, signals.table().why_missing(name)));
+    }
+  }
+  expression.parser_ = std::make_shared<mu::Parser>();
+  define_constants(*expression.parser_);
+  return expression;
+}
+
+Eigen::VectorXd Expression::evaluate(const Signals& signals, std::span<const double> values) const {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(signals.rows()));
+  mu::Parser& parser = *parser_;
+  // Parameters enter as constants: in bulk mode every variable has a value a row.
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    parser.DefineConst(parameters_[i], values[i]);
+  }
+  for (const std::string& name : signals_) {
+    // The parser only reads its variables.
+    parser.DefineVar(name, const_cast<double*>(signals.signal(name).data()));  // NOLINT
+  }
+  try {
+    parser.SetExpr(text_);
+    parser.Eval(result.data(), static_cast<int>(result.size()));
+  } catch (const mu::ParserError&) {  // parse() has tried it: not seen yet
+    result.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return result;
+}
+
+}  // namespace fogbench::model

@@ -1,0 +1,36 @@
+#pragma once
+// The experiments that this bench can do, each carried out on paper (bench_schedule.hpp).
+
+#include <string>
+#include <vector>
+
+#include "model/next/bench_schedule.hpp"
+
+namespace fogbench::model {
+
+struct Experiment {
+  /// What it varies. Nobody heats to learn about a drift.
+  struct About {
+    bool field = false, temperature = false, azimuth = false;
+    bool together = false;  ///< of use only for what acts through all of these
+  };
+
+  std::string key;     ///< "hold_z": short, for tests
+  std::string action;  ///< what to do, in the imperative, with the procedure that does it
+  Recorded record;
+  About about;
+  char axis = 0;         ///< of a field experiment along one axis; 0: any other
+  bool by_hand = false;  ///< no ready procedure does this and no more
+};
+
+/// Where the room and the thermostat stood in the measurement that is to be continued.
+struct BenchState {
+  double ambient_c = 21.0;
+  double held_c = 21.0;     ///< where the thermostat held it; as the room: heaters off
+  std::string moving_axes;  ///< "xz": axes along which a field was varied
+};
+
+/// In a fixed order. All of them, whatever the effects in question are.
+std::vector<Experiment> bench_experiments(const BenchState& state);
+
+}  // namespace fogbench::model
