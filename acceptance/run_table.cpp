@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "record/store.hpp"
+#include "procedures/channel_values.hpp"
 
 namespace fogbench::acceptance {
 using procedures::Point;
@@ -26,11 +26,17 @@ model::TextColumn text_column(const std::vector<Point>& points, TextOf text_of) 
 
 model::Table to_table(const std::vector<Point>& points) {
   model::Table table;
-  for (const record::PointColumn& column : record::point_columns()) {
+  const auto add = [&](std::string name, const auto& value_of) {
     std::vector<double> values;
     values.reserve(points.size());
-    for (const Point& point : points) values.push_back(point.*column.value);
-    table.set_column(std::string(column.name), std::move(values));
+    for (const Point& point : points) values.push_back(value_of(point));
+    table.set_column(std::move(name), std::move(values));
+  };
+  for (const procedures::PointChannel& channel : procedures::point_channels()) {
+    add(std::string(channel.name), [&](const Point& point) { return point.*channel.value; });
+  }
+  for (const std::string& name : procedures::auxiliary_names(points)) {
+    add(name, [&](const Point& point) { return procedures::value_of(point.auxiliary, name); });
   }
   table.set_run(text_column(points, [](const Point& point) { return std::to_string(point.test); }));
   table.set_segment(text_column(points, [](const Point& point) { return point.segment; }));

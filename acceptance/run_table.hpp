@@ -7,7 +7,7 @@
 
 namespace fogbench::acceptance {
 
-/// Points as a measurement table: the numbers of point_columns(), `run` holds the test.
+/// Points as a measurement table: the channels of a point, `run` holds the test.
 model::Table to_table(const std::vector<procedures::Point>& points);
 
 }  // namespace fogbench::acceptance

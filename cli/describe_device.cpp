@@ -6,6 +6,7 @@
 #include "cli/output.hpp"
 #include "config/codec.hpp"
 #include "config/describe_device.hpp"
+#include "config/device_file.hpp"
 #include "config/paths.hpp"
 #include "drivers/frame_parser.hpp"
 #include "drivers/number_codec.hpp"
@@ -118,6 +119,22 @@ std::string describe(const config::FrameDevice& d) {
       fields_text(fields));
 }
 
+template <class Sensor>
+std::string describe(const Sensor& sensor) {
+  using Align = TextTable::Align;
+  TextTable table({{"channel", "", Align::kLeft},
+                   {"unit", "", Align::kLeft},
+                   {"one count", ""},
+                   {"limits", "", Align::kLeft},
+                   {"meaning", "", Align::kLeft}});
+  for (const config::SensorChannel& c : sensor.channels) {
+    table.add_row({c.name, std::string(config::unit_of(c.name)), scaling(c.scale, c.offset),
+                   bounds(c.minimum, c.maximum), c.meaning});
+  }
+  return fmt::format("an auxiliary sensor: each channel is recorded beside the measurement\n{}",
+                     table.text());
+}
+
 }  // namespace
 
 Result<config::DeviceFile> read_device(const std::string& name) {
@@ -135,11 +152,6 @@ Result<config::DeviceFile> read_device(const std::string& name) {
   if (problems.empty()) return device;
   for (std::size_t i = 0; i + 1 < problems.size(); ++i) print_error(problems[i].message);
   return problems.back();
-}
-
-std::string kind_of(const config::DeviceFile& device) {
-  constexpr const char* kKinds[] = {"modbus", "scpi", "hid", "frame"};
-  return kKinds[device.index()];
 }
 
 std::string description_text(const config::DeviceFile& device) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "config/device.hpp"
+#include "config/device_file.hpp"
 #include "config/result.hpp"
 
 namespace fogbench::cli {
@@ -12,9 +13,6 @@ namespace fogbench::cli {
 /// A device file, or the name of a ready one. All problems but the last are printed, a line each;
 /// the last one is the error.
 Result<config::DeviceFile> read_device(const std::string& name);
-
-/// "modbus", "scpi", "hid" or "frame", as the file says it.
-std::string kind_of(const config::DeviceFile& device);
 
 /// Several lines, each ended.
 std::string description_text(const config::DeviceFile& device);

@@ -10,6 +10,7 @@
 #include "cli/output.hpp"
 #include "config/codec.hpp"
 #include "config/describe_device.hpp"
+#include "config/describe_device_file.hpp"
 
 namespace fogbench::cli {
 namespace {

@@ -12,8 +12,10 @@
 #include "cli/describe_device.hpp"
 #include "cli/output.hpp"
 #include "config/bench.hpp"
+#include "config/device_file.hpp"
 #include "config/json_file.hpp"
 #include "config/paths.hpp"
+#include "drivers/auxiliary_sensor.hpp"
 #include "drivers/open_ports.hpp"
 #include "drivers/probe.hpp"
 
@@ -45,6 +47,11 @@ Result<std::pair<config::DeviceFile, std::string>> find_in_bench(const std::stri
   if (bench->turntable.device) {
     instruments["turntable"] = {*bench->turntable.device, bench->turntable.connection};
   }
+  for (const config::AuxiliaryConfig& sensor : bench->auxiliary) {
+    instruments[sensor.name] = {
+        std::visit([](const auto& d) { return config::DeviceFile(d); }, sensor.device),
+        sensor.connection};
+  }
   const auto found = instruments.find(role);
   if (found != instruments.end()) return found->second;
   std::vector<std::string> names;
@@ -58,10 +65,17 @@ Result<std::pair<config::DeviceFile, std::string>> find_in_bench(const std::stri
 template <class Device>
 Result<ProbeReport> probe_at(const Device& device, const std::string& connection) {
   drivers::SteadyClock clock;
-  const auto port = drivers::open_port(device, connection, clock);
+  auto port = drivers::open_port(device, connection, clock);
   if (!port) return port.error();
-  if constexpr (std::is_same_v<Device, config::FrameDevice> ||
-                std::is_same_v<Device, config::ModbusDevice>) {
+  if constexpr (std::is_constructible_v<config::SensorDevice, Device>) {
+    config::AuxiliaryConfig config;
+    config.name = "sensor";
+    config.device = device;
+    auto sensor = drivers::attach_sensor(config, std::move(*port), clock);
+    if (!sensor) return sensor.error();
+    return drivers::probe(**sensor);
+  } else if constexpr (std::is_same_v<Device, config::FrameDevice> ||
+                       std::is_same_v<Device, config::ModbusDevice>) {
     return drivers::probe(device, **port, clock);  // listens for a while, or asks again
   } else {
     return drivers::probe(device, **port);

@@ -7,6 +7,7 @@
 
 #include "acceptance/results.hpp"
 #include "cli/output.hpp"
+#include "procedures/channel_values.hpp"
 #include "procedures/estimate.hpp"
 #include "record/store.hpp"
 
@@ -147,9 +148,10 @@ ordered_json to_json(const record::StoredPoint& stored) {
                     {"segment", stored.point.segment},
                     {"frames", stored.point.count},
                     {"frames_dropped", stored.point.dropped}};
-  for (const auto& column : record::point_columns()) {
+  for (const auto& column : procedures::point_channels()) {
     json[std::string(column.name)] = stored.point.*column.value;
   }
+  for (const auto& [name, value] : stored.point.auxiliary) json[name] = value;
   if (!stored.void_because.empty()) json["void_because"] = stored.void_because;
   return json;
 }

@@ -26,8 +26,16 @@ Result<std::string> served_bench_json(const fs::path& file,
   bench.erase("simulation");
   bench["name"] = bench.value("name", "simulated") + "-served";
   bench["description"] = "Served by fogbench simulate --serve; good as long as that runs.";
+  const auto entry_of = [&](const std::string& name) -> nlohmann::ordered_json& {
+    if (bench.contains("auxiliary")) {
+      for (auto& sensor : bench["auxiliary"]) {
+        if (sensor.value("name", "") == name) return sensor;
+      }
+    }
+    return bench[name];
+  };
   for (const simulator::ServedInstrument& instrument : instruments) {
-    auto& entry = bench[instrument.name];
+    auto& entry = entry_of(instrument.name);
     entry["connection"] = instrument.connection;
     if (entry.contains("device")) entry["device"] = absolute(entry["device"].get<std::string>());
   }

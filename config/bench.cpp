@@ -18,6 +18,30 @@ bool check_scheme(const Place& at, const InstrumentConfig& i,
          (at / "connection").wrong(expected);
 }
 
+/// Nobody is taken for another: neither an instrument nor a channel.
+bool check_auxiliary(const Place& at, const BenchConfig& b) {
+  std::vector<std::string> names{"thermostat",   "coil_horizontal", "coil_vertical",
+                                 "magnetometer", "turntable",       "gyro"};
+  std::vector<std::string> channels;
+  const auto is_new = [](std::vector<std::string>& known, const std::string& name) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) return false;
+    known.push_back(name);
+    return true;
+  };
+  for (std::size_t i = 0; i < b.auxiliary.size(); ++i) {
+    if (!is_new(names, b.auxiliary[i].name)) {
+      return (at / i / "name").wrong("a name that no other instrument has");
+    }
+    for (const SensorChannel& channel : channels_of(b.auxiliary[i].device)) {
+      if (!is_new(channels, channel.name)) {
+        return (at / i / "device")
+            .fail(fmt::format("has a channel {}, as a sensor before it has", channel.name));
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<std::chrono::sys_days> date_of(const std::string& text) {
@@ -31,6 +55,32 @@ std::optional<std::chrono::sys_days> date_of(const std::string& text) {
       std::chrono::day{static_cast<unsigned>(std::stoi(text.substr(8, 2)))}};
   if (!date.ok()) return std::nullopt;
   return std::chrono::sys_days{date};
+}
+
+std::vector<SensorChannel> auxiliary_channels(const BenchConfig& bench) {
+  std::vector<SensorChannel> all;
+  for (const AuxiliaryConfig& sensor : bench.auxiliary) {
+    const auto its = channels_of(sensor.device);
+    all.insert(all.end(), its.begin(), its.end());
+  }
+  return all;
+}
+
+bool Codec<DeviceReference<SensorDevice>>::read(const Place& at, DeviceReference<SensorDevice>& out,
+                                                const Rule& /*rule*/) {
+  std::optional<DeviceFile> file = read_named_device(at);
+  if (!file) return false;
+  const auto take = [&]<class Device>(Device& device) {
+    if constexpr (std::is_constructible_v<SensorDevice, Device>) {
+      out.device = std::move(device);
+      return true;
+    } else {
+      return at.fail(
+          "names no sensor; expected a device file of the kind modbus_sensor, "
+          "scpi_sensor, hid_sensor or line_sensor");
+    }
+  };
+  return std::visit(take, *file);
 }
 
 std::optional<DeviceFile> read_named_device(const Place& at) {
@@ -129,6 +179,23 @@ bool check(const Place& at, const GyroConfig& g) {
              .wrong(fmt::format("at least one frame, {} s", 1.0 / g.device.frame_rate_hz));
 }
 
+bool check(const Place& at, const AuxiliaryConfig& a) {
+  if (!is_identifier(a.name)) return (at / "name").wrong(kIdentifier);
+  if (!check(at, static_cast<const InstrumentConfig&>(a))) return false;
+  const auto with = [&](std::initializer_list<std::string_view> schemes,
+                        std::string_view expected) {
+    return check_scheme(at, a, schemes, expected);
+  };
+  if (std::holds_alternative<ModbusSensor>(a.device)) {
+    return with({"tcp:", "rtu:"}, "a Modbus sensor on tcp: or rtu:");
+  }
+  if (std::holds_alternative<ScpiSensor>(a.device)) {
+    return with({"usb:", "tty:"}, "a SCPI sensor on usb: or tty:");
+  }
+  return std::holds_alternative<HidSensor>(a.device) ? with({"hid:"}, "a HID sensor on hid:")
+                                                     : with({"tty:"}, "a sensor on tty:");
+}
+
 bool check(const Place& at, const MagneticPlant& m) {
   return is_invertible(m.sensor_matrix) ||
          (at / "sensor_matrix").fail("cannot be inverted; expected a matrix near the unit matrix");
@@ -147,6 +214,7 @@ bool check(const Place& at, const BenchConfig& b) {
                           b.limits.temperature_maximum.value,
                           b.thermostat.device.target_maximum.value));
   }
+  if (!check_auxiliary(at / "auxiliary", b)) return false;
   const Place interlocks = at / "interlocks";
   return !interlocks.present() || check_interlocks(interlocks, b);
 }

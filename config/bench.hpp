@@ -13,6 +13,7 @@
 #include "config/device.hpp"
 #include "config/interlock.hpp"
 #include "config/result.hpp"
+#include "config/sensor.hpp"
 #include "config/units.hpp"
 
 namespace fogbench::config {
@@ -54,6 +55,13 @@ struct GyroConfig : InstrumentConfig {
   DegPerHour reference_rate{0.0};
   /// The longest run of consecutive lost frames that an average survives; a longer one is a gap.
   Seconds max_gap{0.1};
+};
+
+/// A sensor beside the measurement: recorded with every point, commanded by nobody. Without it a
+/// run goes on.
+struct AuxiliaryConfig : InstrumentConfig {
+  std::string name;
+  SensorDevice device;
 };
 
 /// What no procedure may exceed on this bench.
@@ -148,11 +156,15 @@ struct BenchConfig {
   MagnetometerConfig magnetometer;  ///< mounted with the gyro: turns with it, reads gyro axes
   TurntableConfig turntable;
   GyroConfig gyro;
+  std::vector<AuxiliaryConfig> auxiliary;
   BenchLimits limits;
   std::vector<InterlockConfig> interlocks;  ///< load_bench puts the default ones where none are
   EstimateConfig estimates;
   SimulationConfig simulation;
 };
+
+/// The channels of all auxiliary sensors, in the order of the bench.
+std::vector<SensorChannel> auxiliary_channels(const BenchConfig& bench);
 
 /// The first moment of a day written YYYY-MM-DD; nothing when there is no such day.
 std::optional<std::chrono::sys_days> date_of(const std::string& text);

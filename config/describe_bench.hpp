@@ -5,6 +5,8 @@
 #include "config/codec.hpp"
 #include "config/describe_device.hpp"
 #include "config/describe_interlock.hpp"
+#include "config/describe_sensor.hpp"
+#include "config/device_file.hpp"
 
 namespace fogbench::config {
 
@@ -40,6 +42,16 @@ struct Codec<DeviceReference<std::optional<Device>>> : Codec<DeviceReference<Dev
   }
   static ordered_json write(const DeviceReference<std::optional<Device>>& reference) {
     return reference.device ? ordered_json(reference.device->name) : ordered_json(nullptr);
+  }
+};
+
+/// A sensor of any kind.
+template <>
+struct Codec<DeviceReference<SensorDevice>> {
+  static bool read(const Place& at, DeviceReference<SensorDevice>& out, const Rule& rule);
+  static ordered_json schema(const Rule& /*rule*/) { return Codec<std::string>::schema({}); }
+  static ordered_json write(const DeviceReference<SensorDevice>& reference) {
+    return name_of(reference.device);
   }
 };
 
@@ -107,6 +119,15 @@ void describe(Visitor& v, GyroConfig& g) {
              "Earth's rate along the sensitive axis here; subtracted from every reading.");
   v.optional("max_gap_s", g.max_gap,
              "Longest run of consecutive lost frames that an average survives.", above(0));
+}
+
+template <class Visitor>
+void describe(Visitor& v, AuxiliaryConfig& a) {
+  v.required("name", a.name, "Names it in events and messages.");
+  describe_instrument(v, a);
+  v.required("device", DeviceReference<SensorDevice>{a.device},
+             "Its description, a device file of the kind modbus_sensor, scpi_sensor, hid_sensor or "
+             "line_sensor, relative to this file.");
 }
 
 template <class Visitor>
@@ -212,10 +233,13 @@ void describe(Visitor& v, BenchConfig& b) {
   v.required("magnetometer", b.magnetometer, "Mounted with the gyro, reads the gyro's axes.");
   v.required("turntable", b.turntable, "Turns the gyro in azimuth.");
   v.required("gyro", b.gyro, "The gyro under test.");
+  v.optional("auxiliary", b.auxiliary,
+             "Sensors that are recorded beside the measurement: each of their quantities is a "
+             "channel of the record.");
   v.optional("limits", b.limits, "What no procedure may exceed here.");
   v.optional("interlocks", b.interlocks,
              "What may not be while a run goes on, and what is done when it is; without this list, "
-             "one of each kind.",
+             "one of each kind but those of channels.",
              not_empty());
   v.optional("estimates", b.estimates, "How long things take here, for a plan's duration.");
   v.optional("simulation", b.simulation, "The true plant behind simulated instruments.");
@@ -226,6 +250,7 @@ bool check(const Place& at, const MagnetometerConfig& magnetometer);
 bool check(const Place& at, const CoilConfig& coil);
 bool check(const Place& at, const TurntableConfig& turntable);
 bool check(const Place& at, const GyroConfig& gyro);
+bool check(const Place& at, const AuxiliaryConfig& sensor);
 bool check(const Place& at, const MagneticPlant& plant);
 bool check(const Place& at, const BenchConfig& bench);
 

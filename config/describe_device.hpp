@@ -215,12 +215,4 @@ bool check(const Place& at, const FrameDevice& device);
 /// Whether the line carries that many frames a second.
 bool check_frame_rate(const Place& at, const FrameDevice& device);
 
-/// One of the four, by its key "kind".
-template <>
-struct Codec<DeviceFile> {
-  static bool read(const Place& at, DeviceFile& out, const Rule& rule);
-  static ordered_json schema(const Rule& rule);
-  static ordered_json write(const DeviceFile& device);
-};
-
 }  // namespace fogbench::config

@@ -18,8 +18,12 @@ void describe(Visitor& v, InterlockCondition& c) {
   const InterlockKindInfo& info = info_of(c.kind);
   v.tag("kind", info.name);
   v.required(info.trip_key, c.trip, info.description, at_least(info.lowest));
-  v.required(info.clear_key, c.clear, "At or below it the condition is over; at most the trip.",
+  v.required(info.clear_key, c.clear,
+             worse_upwards(c.kind) > 0.0
+                 ? "At or below it the condition is over; at most the trip."
+                 : "At or above it the condition is over; at least the trip.",
              at_least(info.lowest));
+  if (watches_channel(c.kind)) v.required("channel", c.channel, "The channel's name.");
   if (c.kind != InterlockKind::kHeaterWithoutEffect) return;
   v.optional("rise_c", c.rise, "So much warmer counts as an effect.", above(0));
   v.optional("near_target_c", c.near_target, "This near to the target none is asked for.",

@@ -184,6 +184,10 @@ void describe(Visitor& v, ProcedureConfig& p) {
   v.required("name", p.name, "Short name.");
   v.optional("description", p.description, "What it measures, in a sentence.");
   v.optional("parameters", p.parameters, "Defaults: a number or a list of numbers each.");
+  v.optional(
+      "needs", p.needs,
+      "Channels of the bench's auxiliary sensors without which a point is void; without this "
+      "list what such a sensor does not say is missing, and the point counts.");
   v.required("steps", p.steps, "What is done, in order.", not_empty());
 }
 

@@ -54,7 +54,8 @@ void describe(Visitor& v, HiddenEffect& h) {
 template <class Visitor>
 void describe(Visitor& v, FaultSpec& f) {
   v.required("device", f.device,
-             "thermostat, coil_horizontal, coil_vertical, magnetometer, turntable or gyro.");
+             "thermostat, coil_horizontal, coil_vertical, magnetometer, turntable, gyro, or the "
+             "name of an auxiliary sensor of the bench.");
   v.required("kind", f.kind, "How it misbehaves.");
   v.optional("at_s", f.at, "From when on, since the start of the run.", at_least(0));
   v.optional("for_s", f.duration, "For how long.", at_least(0));

@@ -4,8 +4,6 @@
 #include <cctype>
 
 #include "config/describe_device.hpp"
-#include "config/house_units.hpp"
-#include "config/json_file.hpp"
 #include "config/stated_unit.hpp"
 
 namespace fogbench::config {
@@ -149,12 +147,6 @@ bool check_no_self_test(const Place& at, std::string command) {
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return command.find("TST") == std::string::npos ||
          at.wrong("no self test: it swings the output to its maximum");
-}
-
-template <class Device>
-bool read_kind(const Place& at, DeviceFile& out) {
-  auto& device = out.emplace<Device>();
-  return Codec<Device>::read(at, device, {}) && take_to_house_units(at, device);
 }
 
 }  // namespace
@@ -340,37 +332,6 @@ ordered_json Codec<MagnetometerCalibration>::write(const MagnetometerCalibration
   MagnetometerCalibration copy = calibration;
   describe(writer, copy);
   return writer.finish();
-}
-
-bool Codec<DeviceFile>::read(const Place& at, DeviceFile& out, const Rule& /*rule*/) {
-  if (!at.value().is_object()) return at.wrong("an object");
-  const Place kind = at / "kind";
-  const std::string name =
-      kind.present() && kind.value().is_string() ? kind.value().get<std::string>() : "";
-  if (name == "modbus") return read_kind<ModbusDevice>(at, out);
-  if (name == "scpi") return read_kind<ScpiDevice>(at, out);
-  if (name == "hid") return read_kind<HidDevice>(at, out);
-  if (name == "frame") return read_kind<FrameDevice>(at, out);
-  return kind.wrong("\"modbus\", \"scpi\", \"hid\" or \"frame\"");
-}
-
-ordered_json Codec<DeviceFile>::schema(const Rule& /*rule*/) {
-  return {{"oneOf",
-           {schema_of<ModbusDevice>(), schema_of<ScpiDevice>(), schema_of<HidDevice>(),
-            schema_of<FrameDevice>()}}};
-}
-
-ordered_json Codec<DeviceFile>::write(const DeviceFile& device) {
-  return std::visit([](const auto& d) { return Codec<std::decay_t<decltype(d)>>::write(d); },
-                    device);
-}
-
-Result<DeviceFile> load_device(const std::filesystem::path& file) {
-  return read_config<DeviceFile>(file);
-}
-
-std::vector<Error> check_device(const std::filesystem::path& file, DeviceFile& out) {
-  return read_config(file, out);
 }
 
 }  // namespace fogbench::config

@@ -8,14 +8,11 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "config/result.hpp"
 #include "config/units.hpp"
 
 namespace fogbench::config {
@@ -146,14 +143,5 @@ struct FrameDevice {
   /// As a ModbusDevice's, of the rate: frames that repeat it beyond are not valid.
   std::optional<Seconds> stuck_after;
 };
-
-using DeviceFile = std::variant<ModbusDevice, ScpiDevice, HidDevice, FrameDevice>;
-
-/// Reads and checks one instrument description; its key "kind" is modbus, scpi, hid or frame.
-/// Errors: kBadInput, one line with the file and the JSON pointer.
-Result<DeviceFile> load_device(const std::filesystem::path& file);
-
-/// The same, with every error at once instead of the first; empty when `out` has been read.
-std::vector<Error> check_device(const std::filesystem::path& file, DeviceFile& out);
 
 }  // namespace fogbench::config

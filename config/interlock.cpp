@@ -4,6 +4,7 @@
 #include <array>
 
 #include "config/bench.hpp"
+#include "config/channels.hpp"
 #include "config/describe_interlock.hpp"
 
 namespace fogbench::config {
@@ -17,7 +18,7 @@ constexpr double kAnyThreshold = -100000.0;
 /// Full power heats by 0.15 degC meanwhile.
 constexpr std::uint16_t kSlowestGuard = 10;
 
-constexpr std::array<InterlockKindInfo, 8> kKinds = {
+constexpr std::array<InterlockKindInfo, 10> kKinds = {
     {{Kind::kOverTemperature, "over_temperature", "trip_c", "clear_c", kAnyThreshold, "degC",
       "temperature is", "The hottest of the three sensors on the carrier is above this."},
      {Kind::kSensorDisagreement, "sensor_disagreement", "trip_c", "clear_c", 0.0, "degC",
@@ -38,7 +39,11 @@ constexpr std::array<InterlockKindInfo, 8> kKinds = {
       "More than this part of the last second's frames have a status that is not valid."},
      {Kind::kCalibrationOverdue, "calibration_overdue", "trip_days", "clear_days", kAnyThreshold,
       "days", "calibration is overdue by",
-      "An instrument's calibration_due is more than this many days ago; negative: ahead."}}};
+      "An instrument's calibration_due is more than this many days ago; negative: ahead."},
+     {Kind::kChannelAbove, "channel_above", "trip", "clear", kAnyThreshold, "", "reads",
+      "The channel's value, in the unit that its name ends in, is above this."},
+     {Kind::kChannelBelow, "channel_below", "trip", "clear", kAnyThreshold, "", "reads",
+      "The channel's value, in the unit that its name ends in, is below this."}}};
 
 InterlockConfig one(InterlockKind kind, double trip, double clear, std::uint16_t consecutive,
                     InterlockAction action) {
@@ -53,6 +58,11 @@ std::span<const InterlockKindInfo> interlock_kinds() {
 
 const InterlockKindInfo& info_of(InterlockKind kind) {
   return kKinds[static_cast<std::size_t>(kind)];
+}
+
+std::string_view unit_of(const InterlockCondition& condition) {
+  return watches_channel(condition.kind) ? unit_of(condition.channel)
+                                         : info_of(condition.kind).unit;
 }
 
 std::string_view name_of(InterlockAction action) {
@@ -97,8 +107,11 @@ bool Codec<InterlockCondition>::read(const Place& at, InterlockCondition& out,
   ObjectReader reader(at);
   describe(reader, out);
   if (!reader.finish()) return false;
-  return out.clear <= out.trip ||
-         (at / found->clear_key).wrong(fmt::format("at most {} {}", found->trip_key, out.trip));
+  const double side = worse_upwards(out.kind);
+  return side * out.clear <= side * out.trip ||
+         (at / found->clear_key)
+             .wrong(fmt::format("at {} {} {}", side > 0.0 ? "most" : "least", found->trip_key,
+                                out.trip));
 }
 
 ordered_json Codec<InterlockCondition>::schema(const Rule& /*rule*/) {
@@ -127,12 +140,24 @@ bool check(const Place& at, const InterlockConfig& i) {
 bool check_interlocks(const Place& at, const BenchConfig& b) {
   const double highest_c = b.limits.temperature_maximum.value;
   const double at_most_c = highest_c + kOvershoot.value;
+  const auto own = auxiliary_channels(b);
+  const auto is_read = [&](const std::string& channel) {
+    return find_channel(channel) != nullptr ||
+           std::any_of(own.begin(), own.end(), [&](const auto& c) { return c.name == channel; });
+  };
   bool guarded = false;
   for (std::size_t i = 0; i < b.interlocks.size(); ++i) {
     const InterlockConfig& interlock = b.interlocks[i];
     for (std::size_t j = 0; j < i; ++j) {
       if (b.interlocks[j].name != interlock.name) continue;
       return (at / i / "name").wrong(fmt::format("another name than that of interlock {}", j));
+    }
+    for (const InterlockCondition& c : interlock.conditions()) {
+      if (!watches_channel(c.kind) || is_read(c.channel)) continue;
+      return (at / i).fail(
+          fmt::format("watches the channel \"{}\", which nothing on this "
+                      "bench measures",
+                      c.channel));
     }
     // One condition alone, or one of several that suffice.
     if (interlock.action != InterlockAction::kAbort || interlock.all_of.size() > 1 ||

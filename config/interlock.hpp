@@ -4,7 +4,7 @@
 //
 // An interlock trips when its conditions hold: all of `all_of`, or one of `any_of`. A condition
 // holds above its trip threshold and is over at or below its clear threshold; in between nothing
-// changes (hysteresis). Of every kind, more is worse.
+// changes (hysteresis). Of every kind more is worse, but of channel_below, which looks downwards.
 
 #include <cstdint>
 #include <span>
@@ -26,7 +26,9 @@ enum class InterlockKind {
   kCurrentMismatch,
   kGyroSilent,
   kGyroInvalid,
-  kCalibrationOverdue
+  kCalibrationOverdue,
+  kChannelAbove,
+  kChannelBelow
 };
 
 enum class InterlockAction { kWarn, kPause, kAbort };
@@ -39,6 +41,9 @@ struct InterlockCondition {
   /// asked for.
   Celsius rise{0.5};
   Celsius near_target{2.0};
+  /// Of kChannelAbove and kChannelBelow only: a channel that the bench monitors, or an auxiliary
+  /// sensor's.
+  std::string channel;
 };
 
 struct InterlockConfig {
@@ -67,7 +72,16 @@ struct InterlockKindInfo {
 /// In the order of the enumeration.
 std::span<const InterlockKindInfo> interlock_kinds();
 const InterlockKindInfo& info_of(InterlockKind kind);
+/// Of its value: the kind's, or the channel's.
+std::string_view unit_of(const InterlockCondition& condition);
 std::string_view name_of(InterlockAction action);
+constexpr bool watches_channel(InterlockKind kind) {
+  return kind == InterlockKind::kChannelAbove || kind == InterlockKind::kChannelBelow;
+}
+/// +1: it trips above its threshold; -1: below.
+constexpr double worse_upwards(InterlockKind kind) {
+  return kind == InterlockKind::kChannelBelow ? -1.0 : 1.0;
+}
 
 /// How far above the bench's highest temperature a controller may overshoot, and nothing else.
 inline constexpr Celsius kOvershoot{2.0};

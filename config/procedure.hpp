@@ -140,6 +140,7 @@ struct ProcedureConfig {
   std::string name;
   std::string description;
   Parameters parameters;
+  std::vector<std::string> needs;  ///< auxiliary channels without which a point is void
   std::vector<Step> steps;
   std::filesystem::path file;
 };

@@ -56,8 +56,7 @@ enum class FaultKind {
 /// ... `at_operation + operations - 1` of that instrument, counted from 1, whenever they come.
 /// An operation is one request with its answer, one report, one frame.
 struct FaultSpec {
-  std::string
-      device;  ///< thermostat, coil_horizontal, coil_vertical, magnetometer, turntable, gyro
+  std::string device;  ///< thermostat, coil_horizontal, ..., gyro, or an auxiliary sensor's name
   FaultKind kind = FaultKind::kTimeout;
   Seconds at{0.0};
   Seconds duration{0.0};

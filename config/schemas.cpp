@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "config/describe_bench.hpp"
+#include "config/describe_device_file.hpp"
 #include "config/describe_model.hpp"
 #include "config/describe_procedure.hpp"
 #include "config/describe_scenario.hpp"

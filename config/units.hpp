@@ -76,6 +76,10 @@ inline constexpr UnitSuffix kUnitSuffixes[] = {
     {"_s", "s"},
     {"_days", "days"},
     {"_percent", "%"},
+    {"_hpa", "hPa"},
+    {"_mv", "mV"},
+    {"_ma", "mA"},
+    {"_lx", "lx"},
 };
 
 /// The printed unit of a column or key name ("field_x_ut" -> "uT"); empty when it has none.

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "config/json_file.hpp"
+#include "procedures/channel_values.hpp"
 #include "procedures/run_state.hpp"
-#include "record/store.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -76,9 +76,8 @@ ordered_json to_json(const InterruptedRun& run) {
 
 ordered_json to_json(const procedures::MonitorRow& row) {
   ordered_json values = ordered_json::object();
-  for (const record::MonitorColumn& column : record::monitor_columns()) {
-    values[std::string(column.name)] = number(column.value(row));
-  }
+  procedures::for_each_value(
+      row, [&](std::string_view name, double value) { values[std::string(name)] = number(value); });
   values["mode"] = name_of(row.thermostat.mode);
   return values;
 }
@@ -92,8 +91,7 @@ ordered_json age_of(double time_s, const DeskView& view) {
 ordered_json old_values(const DeskView& view) {
   ordered_json values = ordered_json::object();
   for (const KnownValue& known : view.known) {
-    values[std::string(known.name)] = {{"value", number(known.value)},
-                                       {"age_s", age_of(known.time_s, view)}};
+    values[known.name] = {{"value", number(known.value)}, {"age_s", age_of(known.time_s, view)}};
   }
   return values;
 }

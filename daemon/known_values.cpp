@@ -2,20 +2,19 @@
 
 #include <cmath>
 
-#include "record/store.hpp"
+#include "procedures/channel_values.hpp"
 
 namespace fogbench::daemon {
 
 std::vector<KnownValue> KnownValues::missing(const procedures::MonitorRow& row) {
   std::vector<KnownValue> missing;
-  for (const record::MonitorColumn& column : record::monitor_columns()) {
-    const double value = column.value(row);
+  procedures::for_each_value(row, [&](std::string_view name, double value) {
     if (std::isfinite(value)) {
-      last_[column.name] = {column.name, value, row.time_s};
-    } else if (const auto known = last_.find(column.name); known != last_.end()) {
+      last_[std::string(name)] = {std::string(name), value, row.time_s};
+    } else if (const auto known = last_.find(name); known != last_.end()) {
       missing.push_back(known->second);
     }
-  }
+  });
   return missing;
 }
 

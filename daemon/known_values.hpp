@@ -11,7 +11,7 @@ namespace fogbench::daemon {
 
 /// The last reading of a quantity that was not missing.
 struct KnownValue {
-  std::string_view name;  ///< of its column of the table `monitor`
+  std::string name;  ///< the channel's
   double value = 0.0;
   double time_s = 0.0;  ///< since power-on
 };
@@ -22,7 +22,7 @@ class KnownValues {
   std::vector<KnownValue> missing(const procedures::MonitorRow& row);
 
  private:
-  std::map<std::string_view, KnownValue> last_;
+  std::map<std::string, KnownValue, std::less<>> last_;
 };
 
 }  // namespace fogbench::daemon

@@ -7,9 +7,10 @@
 #include <cmath>
 #include <system_error>
 
+#include "config/channels.hpp"
 #include "config/output_file.hpp"
 #include "daemon/desk_json.hpp"
-#include "record/store.hpp"
+#include "procedures/channel_values.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -82,12 +83,15 @@ void add_last_run(Exposition& out, const EndedRun& run, const Counts& outcomes) 
 }
 
 void add_values(Exposition& out, const procedures::MonitorRow& row) {
-  for (const record::MonitorColumn& column : record::monitor_columns()) {
-    const double value = column.value(row);
+  procedures::for_each_value(row, [&](std::string_view name, double value) {
     // The time has a metric of its own; what an instrument did not say is left out.
-    if (column.name == "time_s" || !std::isfinite(value)) continue;
-    out.single(column.name, fmt::format("Last reading: {}", column.meaning), value);
-  }
+    if (name == "time_s" || !std::isfinite(value)) return;
+    const config::Channel* const channel = config::find_channel(name);
+    out.single(name,
+               fmt::format("Last reading: {}",
+                           channel != nullptr ? channel->meaning : "an auxiliary sensor's"),
+               value);
+  });
 }
 
 }  // namespace

@@ -102,6 +102,9 @@ Result<bool> is_simulated(const config::BenchConfig& bench) {
       {"magnetometer", &bench.magnetometer},
       {"gyro", &bench.gyro}};
   if (bench.turntable.motorised) instruments.emplace_back("turntable", &bench.turntable);
+  for (const config::AuxiliaryConfig& sensor : bench.auxiliary) {
+    instruments.emplace_back(sensor.name.c_str(), &sensor);
+  }
   const char* simulated = nullptr;
   const char* real = nullptr;
   for (const auto& [name, instrument] : instruments) {
@@ -222,6 +225,9 @@ Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure,
   header.started_at = drivers::utc_text(clock_->wall_now());
   header.frame_rate_hz = bench_.gyro->frame_rate_hz();
   header.reference_rate_deg_per_h = setup_.bench.gyro.reference_rate.value;
+  for (const config::SensorChannel& channel : config::auxiliary_channels(setup_.bench)) {
+    header.auxiliary.push_back({channel.name, channel.meaning});
+  }
   if (procedure.takes_up) {
     auto continuation = take_up(procedure, *engine_, *clock_);
     if (!continuation) return continuation.error();

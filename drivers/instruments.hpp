@@ -15,6 +15,7 @@
 
 #include "config/procedure.hpp"
 #include "config/result.hpp"
+#include "config/sensor.hpp"
 #include "config/units.hpp"
 #include "drivers/clock.hpp"
 
@@ -167,6 +168,17 @@ class Gyro : public Instrument {
   virtual std::optional<FrameRate> measured_frame_rate() const = 0;
 };
 
+/// A sensor beside the measurement: it commands nothing, and nothing depends on it.
+class AuxiliarySensor : public Instrument {
+ public:
+  /// A reading of each channel, in the order of the description. An error is that channel's, or of
+  /// all of them when the sensor cannot be reached: kUnplugged, kTimeout, kDevice, kProtocol,
+  /// kStale, kLimit for a value that cannot be.
+  virtual std::vector<Result<double>> read() = 0;
+  virtual const std::string& name() const = 0;
+  virtual const std::vector<config::SensorChannel>& channels() const = 0;
+};
+
 /// The instruments of one bench.
 struct Bench {
   std::unique_ptr<Thermostat> thermostat;
@@ -175,6 +187,7 @@ struct Bench {
   std::unique_ptr<Magnetometer> magnetometer;
   std::unique_ptr<Turntable> turntable;
   std::unique_ptr<Gyro> gyro;
+  std::vector<std::unique_ptr<AuxiliarySensor>> auxiliary;  ///< in the order of the bench file
 };
 
 }  // namespace fogbench::drivers

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "drivers/auxiliary_sensor.hpp"
 #include "drivers/hid_magnetometer.hpp"
 #include "drivers/modbus_thermostat.hpp"
 #include "drivers/scpi_coil_supply.hpp"
@@ -72,6 +73,14 @@ Result<Bench> attach_bench(const config::BenchConfig& config, Transports transpo
                   bench.gyro);
   }
   if (!status) return status.error();
+  if (transports.auxiliary.size() != config.auxiliary.size()) {
+    return Error{ErrorCode::kDevice, "auxiliary: not every sensor is connected to something"};
+  }
+  for (std::size_t i = 0; i < config.auxiliary.size(); ++i) {
+    auto sensor = attach_sensor(config.auxiliary[i], std::move(transports.auxiliary[i]), clock);
+    if (!sensor) return sensor.error();
+    bench.auxiliary.push_back(std::move(*sensor));
+  }
   return bench;
 }
 

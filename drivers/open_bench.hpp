@@ -17,7 +17,7 @@ Result<Bench> attach_bench(const config::BenchConfig& config, Transports transpo
 
 /// Begins every instrument, the others too when one fails: identity checked, coil supplies at 0 A
 /// with their outputs off. May be repeated. The error is the first one, with those of the other
-/// instruments behind it.
+/// instruments behind it. Auxiliary sensors begin when they are first read: nothing waits for them.
 Status begin_bench(const Bench& bench);
 
 /// Attached and begun.

@@ -39,23 +39,20 @@ Status take(const char* name, Opened<Transport> opened, std::unique_ptr<Transpor
   return {};
 }
 
-}  // namespace
-
-Opened<ModbusTransport> open_port(const config::ModbusDevice& device, const std::string& connection,
-                                  Clock& clock) {
+Opened<ModbusTransport> open_registers(std::uint8_t unit_id, const std::string& connection,
+                                       Clock& clock) {
   const auto place = parsed(connection);
   if (!place) return place.error();
   if (const auto* tcp = std::get_if<config::TcpConnection>(&*place)) {
-    return open_modbus(*tcp, device.unit_id, clock);
+    return open_modbus(*tcp, unit_id, clock);
   }
   if (const auto* rtu = std::get_if<config::RtuConnection>(&*place)) {
-    return open_modbus(*rtu, device.unit_id, clock);
+    return open_modbus(*rtu, unit_id, clock);
   }
   return wrong(connection, "tcp: or rtu:, as of a Modbus instrument");
 }
 
-Opened<MessageTransport> open_port(const config::ScpiDevice&, const std::string& connection,
-                                   Clock& clock) {
+Opened<MessageTransport> open_messages(const std::string& connection, Clock& clock) {
   const auto place = parsed(connection);
   if (!place) return place.error();
   if (const auto* usb = std::get_if<config::UsbConnection>(&*place)) {
@@ -69,8 +66,7 @@ Opened<MessageTransport> open_port(const config::ScpiDevice&, const std::string&
   return wrong(connection, "usb: or tty:, as of a SCPI instrument");
 }
 
-Opened<HidTransport> open_port(const config::HidDevice&, const std::string& connection,
-                               Clock& clock) {
+Opened<HidTransport> open_reports(const std::string& connection, Clock& clock) {
   const auto place = parsed(connection);
   if (!place) return place.error();
   if (const auto* hid = std::get_if<config::HidConnection>(&*place)) {
@@ -79,14 +75,49 @@ Opened<HidTransport> open_port(const config::HidDevice&, const std::string& conn
   return wrong(connection, "hid:, as of a HID instrument");
 }
 
-Opened<SerialTransport> open_port(const config::FrameDevice& device, const std::string& connection,
-                                  Clock& clock) {
+Opened<SerialTransport> open_stream(std::uint32_t usual_baud, const std::string& connection,
+                                    Clock& clock) {
   const auto place = parsed(connection);
   if (!place) return place.error();
   if (const auto* tty = std::get_if<config::TtyConnection>(&*place)) {
-    return open_serial(tty->tty, tty->baud.value_or(device.baud), clock);
+    return open_serial(tty->tty, tty->baud.value_or(usual_baud), clock);
   }
-  return wrong(connection, "tty:, as of a gyro that streams frames");
+  return wrong(connection, "tty:, as of what streams by itself");
+}
+
+}  // namespace
+
+Opened<ModbusTransport> open_port(const config::ModbusDevice& device, const std::string& connection,
+                                  Clock& clock) {
+  return open_registers(device.unit_id, connection, clock);
+}
+Opened<ModbusTransport> open_port(const config::ModbusSensor& device, const std::string& connection,
+                                  Clock& clock) {
+  return open_registers(device.unit_id, connection, clock);
+}
+Opened<MessageTransport> open_port(const config::ScpiDevice&, const std::string& connection,
+                                   Clock& clock) {
+  return open_messages(connection, clock);
+}
+Opened<MessageTransport> open_port(const config::ScpiSensor&, const std::string& connection,
+                                   Clock& clock) {
+  return open_messages(connection, clock);
+}
+Opened<HidTransport> open_port(const config::HidDevice&, const std::string& connection,
+                               Clock& clock) {
+  return open_reports(connection, clock);
+}
+Opened<HidTransport> open_port(const config::HidSensor&, const std::string& connection,
+                               Clock& clock) {
+  return open_reports(connection, clock);
+}
+Opened<SerialTransport> open_port(const config::FrameDevice& device, const std::string& connection,
+                                  Clock& clock) {
+  return open_stream(device.baud, connection, clock);
+}
+Opened<SerialTransport> open_port(const config::LineSensor& device, const std::string& connection,
+                                  Clock& clock) {
+  return open_stream(device.baud, connection, clock);
 }
 
 Result<Transports> open_ports(const config::BenchConfig& config, Clock& clock) {
@@ -105,6 +136,16 @@ Result<Transports> open_ports(const config::BenchConfig& config, Clock& clock) {
   }
   if (status) status = take("gyro", open(config.gyro), t.gyro);
   if (!status) return status.error();
+  for (const config::AuxiliaryConfig& sensor : config.auxiliary) {
+    const auto open_sensor = [&](const auto& device) -> Status {
+      auto port = open_port(device, sensor.connection, clock);
+      if (!port) return named(sensor.name, port.error());
+      t.auxiliary.emplace_back(std::move(*port));
+      return {};
+    };
+    status = std::visit(open_sensor, sensor.device);
+    if (!status) return status.error();
+  }
   return t;
 }
 

@@ -23,6 +23,15 @@ Result<std::unique_ptr<HidTransport>> open_port(const config::HidDevice& device,
 Result<std::unique_ptr<SerialTransport>> open_port(const config::FrameDevice& device,
                                                    const std::string& connection, Clock& clock);
 
+Result<std::unique_ptr<ModbusTransport>> open_port(const config::ModbusSensor& device,
+                                                   const std::string& connection, Clock& clock);
+Result<std::unique_ptr<MessageTransport>> open_port(const config::ScpiSensor& device,
+                                                    const std::string& connection, Clock& clock);
+Result<std::unique_ptr<HidTransport>> open_port(const config::HidSensor& device,
+                                                const std::string& connection, Clock& clock);
+Result<std::unique_ptr<SerialTransport>> open_port(const config::LineSensor& device,
+                                                   const std::string& connection, Clock& clock);
+
 /// The ways to all instruments of a bench, whoever is there. `clock` must outlive the transports.
 /// Errors: as open_port, with the instrument's name in front; a simulated instrument is one too.
 /// Precondition: a motorised turntable has its description.

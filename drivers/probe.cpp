@@ -255,4 +255,24 @@ ProbeReport probe(const config::FrameDevice& device, SerialTransport& transport,
   return report;
 }
 
+ProbeReport probe(AuxiliarySensor& sensor) {
+  ProbeReport report;
+  const auto identity = sensor.identity();
+  report.rows.push_back({"identity",
+                         "",
+                         identity ? *identity : "",
+                         {},
+                         {},
+                         identity ? "" : identity.error().message});
+  const auto values = sensor.read();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string& name = sensor.channels()[i].name;
+    ProbeRow row{name, sensor.channels()[i].meaning,       {},
+                 {},   std::string(config::unit_of(name)), {}};
+    take_value(values[i], row);
+    report.rows.push_back(std::move(row));
+  }
+  return report;
+}
+
 }  // namespace fogbench::drivers

@@ -10,6 +10,7 @@
 #include "config/device.hpp"
 #include "config/result.hpp"
 #include "drivers/clock.hpp"
+#include "drivers/instruments.hpp"
 #include "drivers/transport.hpp"
 
 namespace fogbench::drivers {
@@ -40,5 +41,8 @@ ProbeReport probe(const config::HidDevice& device, HidTransport& transport);
 /// A second of the stream, and where frames come as many more as their rate takes to be measured:
 /// the newest good frame, what the line carries, and the frames a second by the clock.
 ProbeReport probe(const config::FrameDevice& device, SerialTransport& transport, Clock& clock);
+
+/// Every channel of an auxiliary sensor, once.
+ProbeReport probe(AuxiliarySensor& sensor);
 
 }  // namespace fogbench::drivers

@@ -91,7 +91,7 @@ Result<ScpiDialogue> ScpiDialogue::attach(std::string name, const config::ScpiDe
                                       "maximum and is never sent",
                                       device.name, *test));
   }
-  if (device.set.find(kPlace) == std::string::npos) {
+  if (!device.set.empty() && device.set.find(kPlace) == std::string::npos) {
     return dialogue.error(ErrorCode::kBadInput,
                           fmt::format("\"{}\" has no {} in it", device.set, kPlace));
   }

@@ -25,7 +25,8 @@ class ScpiDialogue {
  public:
   /// Says nothing yet. `name` stands in front of every message; `clock` must outlive the dialogue.
   /// Errors: kBadInput for a description
-  /// that would send a self test, or whose `set` has no place for the value.
+  /// that would send a self test, or whose `set` has no place for the value; one without a `set`
+  /// sets nothing.
   static Result<ScpiDialogue> attach(std::string name, const config::ScpiDevice& device,
                                      std::unique_ptr<MessageTransport> transport, Clock& clock);
   /// Attached and begun.

@@ -17,6 +17,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include "config/result.hpp"
 #include "drivers/clock.hpp"
@@ -69,6 +71,11 @@ class SerialTransport {
   virtual void write_last(std::span<const std::byte> /*bytes*/) noexcept {}
 };
 
+/// The way to a sensor, whichever kind it is of.
+using SensorTransport =
+    std::variant<std::unique_ptr<ModbusTransport>, std::unique_ptr<MessageTransport>,
+                 std::unique_ptr<HidTransport>, std::unique_ptr<SerialTransport>>;
+
 /// Everything that a bench is reached through. The turntable's is null when it is the operator's
 /// hand.
 struct Transports {
@@ -78,6 +85,7 @@ struct Transports {
   std::unique_ptr<HidTransport> magnetometer;
   std::unique_ptr<MessageTransport> turntable;
   std::unique_ptr<SerialTransport> gyro;
+  std::vector<SensorTransport> auxiliary;  ///< in the order of the bench file
 };
 
 }  // namespace fogbench::drivers

@@ -140,11 +140,46 @@ Status BenchWatch::read_slow_instruments() {
   noted = read_coil(*bench_.coil_vertical, coil_vertical_, row_.current_vertical_a);
   if (!noted) return noted;
 
+  if (auto read = read_auxiliary(); !read) return read;
+
   has_new_row_ = true;
   recent_.push_back(row_);
   while (recent_.front().time_s < row_.time_s - kRecentS) recent_.pop_front();
   if (kept_from_record_) return {};
   return recorder_.monitor(row_);
+}
+
+Status BenchWatch::read_auxiliary() {
+  auxiliary_outages_.resize(bench_.auxiliary.size());
+  for (std::size_t i = 0; i < bench_.auxiliary.size() && !interrupted_(); ++i) {
+    drivers::AuxiliarySensor& sensor = *bench_.auxiliary[i];
+    AuxiliaryOutage& outage = auxiliary_outages_[i];
+    for (const auto& channel : sensor.channels()) row_.auxiliary[channel.name] = kMissing;
+    if (clock_.now() < outage.ask_again) continue;
+    const auto values = sensor.read();
+    std::string fault;
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      if (values[c]) row_.auxiliary[sensor.channels()[c].name] = *values[c];
+      if (!values[c] && fault.empty()) fault = values[c].error().message;
+    }
+    const bool silent = std::none_of(values.begin(), values.end(),
+                                     [](const auto& value) { return static_cast<bool>(value); });
+    if (silent) outage.ask_again = clock_.now() + kAuxiliaryPause;
+    // Told when it begins and when it ends; what it says in between may change with every word.
+    if (fault.empty() == outage.says.empty()) continue;
+    Status noted;
+    if (fault.empty()) {
+      noted = event("info", fmt::format("{}: answers again after {:.1f} s", sensor.name(),
+                                        drivers::to_seconds(clock_.now() - outage.since)));
+    } else {
+      noted =
+          event("warning", fault + "; its channels are missing until it answers, the run goes on");
+      outage.since = clock_.now();
+    }
+    if (!noted) return noted;
+    outage.says = fault;
+  }
+  return {};
 }
 
 Status BenchWatch::note_calendar() {

@@ -6,7 +6,8 @@
 // tries again. An instrument that stays silent for longer than kLongestOutage ends the run, one
 // that is unplugged after the bench's absence_maximum. While the coils carry current nobody may
 // leave unnoticed: an instrument that is unplugged then interrupts the step at once. A reading that
-// repeats an old time stamp is stale and counts as failed: it never enters an average.
+// repeats an old time stamp is stale and counts as failed: it never enters an average. An auxiliary
+// sensor that says nothing is missing, and nothing else comes of it.
 //
 // The record's times are the gyro's counter over its stated frame rate. Until that rate is
 // measured, a few seconds, frames are taken as they come. One that is not as stated ends the run; a
@@ -16,8 +17,10 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "config/bench.hpp"
 #include "drivers/clock.hpp"
@@ -39,6 +42,10 @@ class BenchWatch {
   /// A machine's clock that is set by more than this is on record. A leap second is not, and a time
   /// server that slews the clock slews the steady one with it.
   static constexpr drivers::Clock::Duration kCalendarStep = std::chrono::seconds{1};
+
+  /// How long an auxiliary sensor that did not answer is left alone: what it takes to wait for it
+  /// must not keep anybody from looking after the bench.
+  static constexpr drivers::Clock::Duration kAuxiliaryPause = std::chrono::seconds{10};
 
   /// How often a sleep looks whether it is to be cut short: what an abort waits for, beyond the
   /// instrument that is being spoken to.
@@ -85,6 +92,10 @@ class BenchWatch {
   /// False while an instrument's readings are missing.
   bool all_answer() const;
 
+  /// Auxiliary channels without which a point is void; they must outlive the watch.
+  void need(std::span<const std::string> channels) { needed_ = channels; }
+  std::span<const std::string> needed() const { return needed_; }
+
   void set_azimuth(config::Degree azimuth) { azimuth_ = azimuth; }
   Status event(const std::string& severity, const std::string& message,
                const std::string& data_json = {});
@@ -102,6 +113,8 @@ class BenchWatch {
   Status record_frames();
   Status check_frame_rate();
   Status read_slow_instruments();
+  /// What one does not say is missing, said once, and stops nothing.
+  Status read_auxiliary();
   /// Keeps count of the outage; an error when it has lasted too long or cannot be recorded.
   Status note(Outage& outage, const Status& outcome);
   static Status check_new(Outage& outage, Instant taken_at);
@@ -123,8 +136,14 @@ class BenchWatch {
   Instant next_reading_{};
   drivers::Clock::Duration calendar_noted_{};  ///< the clock's offset that is on record
   config::Degree azimuth_{0.0};
+  std::span<const std::string> needed_;
   bool field_guarded_ = false;
   bool kept_from_record_ = false;
+  struct AuxiliaryOutage {
+    std::string says;  ///< empty: there is none
+    Instant since{}, ask_again{};
+  };
+  std::vector<AuxiliaryOutage> auxiliary_outages_;
   Outage gyro_{"gyro", {}}, thermostat_{"thermostat", {}}, magnetometer_{"magnetometer", {}},
       coil_horizontal_{"coil_horizontal", {}}, coil_vertical_{"coil_vertical", {}};
 };

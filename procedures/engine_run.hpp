@@ -32,6 +32,7 @@ class RunEngine::Run {
         started_(engine.clock_.now()),
         step_started_(started_) {
     engine_.run_ = this;
+    watch_.need(plan.needs);
   }
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;

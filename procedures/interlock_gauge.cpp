@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <numbers>
 
+#include "procedures/channel_values.hpp"
 #include "procedures/measurement_window.hpp"
 
 namespace fogbench::procedures {
@@ -55,7 +56,7 @@ GaugeReading current_off(const Observation& seen) {
 
 std::vector<CalibrationDue> calibrations_of(const config::BenchConfig& bench) {
   std::vector<CalibrationDue> dates;
-  const auto add = [&dates](const char* name, const config::InstrumentConfig& instrument) {
+  const auto add = [&dates](const std::string& name, const config::InstrumentConfig& instrument) {
     const auto day = config::date_of(instrument.calibration_due);
     if (day) dates.push_back({name, *day});
   };
@@ -65,6 +66,7 @@ std::vector<CalibrationDue> calibrations_of(const config::BenchConfig& bench) {
   add("magnetometer", bench.magnetometer);
   add("turntable", bench.turntable);
   add("gyro", bench.gyro);
+  for (const config::AuxiliaryConfig& sensor : bench.auxiliary) add(sensor.name, sensor);
   return dates;
 }
 
@@ -92,6 +94,9 @@ GaugeReading InterlockGauge::measure(const Observation& seen) {
       return invalid_frames(seen.stream);
     case InterlockKind::kCalibrationOverdue:
       return overdue(seen.today);
+    case InterlockKind::kChannelAbove:
+    case InterlockKind::kChannelBelow:
+      return channel(seen.row);
   }
   return {};
 }
@@ -123,6 +128,14 @@ GaugeReading InterlockGauge::invalid_frames(const drivers::StreamStatistics& str
   // Silence says nothing of validity: it has an interlock of its own.
   if (invalid + good == 0.0) return {};
   return {100.0 * invalid / (invalid + good), "gyro"};
+}
+
+GaugeReading InterlockGauge::channel(const MonitorRow& row) const {
+  GaugeReading reading{std::numeric_limits<double>::quiet_NaN(), condition_.channel};
+  for_each_value(row, [&](std::string_view name, double value) {
+    if (name == condition_.channel) reading.value = value;
+  });
+  return reading;
 }
 
 GaugeReading InterlockGauge::overdue(std::chrono::sys_days today) const {

@@ -1,7 +1,7 @@
 #pragma once
 // What the condition of an interlock looks at, as one number a second, with where it was found. In
-// every kind more is worse, and NaN is missing: a part of the readings is missing, or nothing is
-// known yet that it could be compared with.
+// every kind but the last more is worse, and NaN is missing: a part of the readings is missing, or
+// nothing is known yet that it could be compared with.
 //
 //   over_temperature       the hottest of the three sensors on the carrier, degC
 //   sensor_disagreement    the larger |working - control|, degC
@@ -13,6 +13,8 @@
 //   gyro_silent            since the last good frame, s
 //   gyro_invalid           invalid frames of all since the last look, %
 //   calibration_overdue    days since calibration_due, of the instrument that has longest been due
+//   channel_above          the channel's value, in its own unit; missing while it says nothing
+//   channel_below          the same, where less is worse
 //
 // No device and no clock: all that is looked at comes with the call.
 
@@ -76,6 +78,7 @@ class InterlockGauge {
   GaugeReading stalled_heating(const Observation& seen);
   GaugeReading invalid_frames(const drivers::StreamStatistics& stream);
   GaugeReading overdue(std::chrono::sys_days today) const;
+  GaugeReading channel(const MonitorRow& row) const;
 
   config::InterlockCondition condition_;
   std::vector<CalibrationDue> calibrations_;

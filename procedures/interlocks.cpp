@@ -24,8 +24,9 @@ Interlocks::Interlocks(const config::BenchConfig& bench) {
 Interlocks::Finding Interlocks::finding_of(const config::InterlockCondition& condition,
                                            double value) {
   if (std::isnan(value)) return Finding::kMissing;
-  if (value > condition.trip) return Finding::kViolated;
-  return value <= condition.clear ? Finding::kClear : Finding::kBetween;
+  const double side = worse_upwards(condition.kind);
+  if (side * value > side * condition.trip) return Finding::kViolated;
+  return side * value <= side * condition.clear ? Finding::kClear : Finding::kBetween;
 }
 
 Interlocks::Finding Interlocks::combine(const Interlock& interlock) {
@@ -93,8 +94,9 @@ std::string Interlocks::sentence(const Interlock& interlock) {
     if (std::isnan(m.reading.value)) continue;
     const config::InterlockCondition& condition = m.gauge.condition();
     const InterlockKindInfo& info = info_of(condition.kind);
-    text += fmt::format("{}{}: {} {:.6g} {} (trips above {:g}, clears at {:g})", before,
-                        m.reading.where, info.says, m.reading.value, info.unit, condition.trip,
+    text += fmt::format("{}{}: {} {:.6g} {} (trips {} {:g}, clears at {:g})", before,
+                        m.reading.where, info.says, m.reading.value, unit_of(condition),
+                        worse_upwards(condition.kind) > 0.0 ? "above" : "below", condition.trip,
                         condition.clear);
     before = interlock.config.all_of.empty() ? " or " : " and ";
   }
@@ -116,7 +118,7 @@ InterlockChange Interlocks::change_of(const Interlock& interlock) {
                                   {"value", m.reading.value},
                                   {"trip", condition.trip},
                                   {"clear", condition.clear},
-                                  {"unit", info.unit}});
+                                  {"unit", unit_of(condition)}});
   }
   return {
       interlock.tripped, interlock.config.action,

@@ -36,7 +36,8 @@ MeasurementWindow::MeasurementWindow(const config::BenchConfig& config, const dr
       end_s_(watch.time_s(end_time())),
       temperature_(start_s_, end_s_, config.thermostat.sensor_lag.count()),
       gradient_(temperature_),
-      control_(temperature_) {
+      control_(temperature_),
+      needed_(watch.needed()) {
   for (const MonitorRow& row : watch.recent_rows()) add(row);
 }
 
@@ -69,6 +70,7 @@ void MeasurementWindow::add(const MonitorRow& row) {
     current_horizontal_.add(row.current_horizontal_a);
     current_vertical_.add(row.current_vertical_a);
     azimuth_.add(row.azimuth_deg);
+    for (const auto& [name, value] : row.auxiliary) auxiliary_[name].add(value);
   }
 }
 
@@ -90,6 +92,13 @@ std::string MeasurementWindow::void_reason() const {
     if (too_few(current->count(), duration_)) {
       return fmt::format("only {} readings of {} in {} s", current->count(), name,
                          duration_.count());
+    }
+  }
+  for (const std::string& name : needed_) {
+    const auto found = auxiliary_.find(name);
+    const std::size_t readings = found == auxiliary_.end() ? 0 : found->second.count();
+    if (too_few(readings, duration_)) {
+      return fmt::format("only {} readings of {} in {} s", readings, name, duration_.count());
     }
   }
   return {};
@@ -128,6 +137,7 @@ Point MeasurementWindow::point(const PointLabels& labels) const {
   p.current_horizontal_a = horizontal;
   p.current_vertical_a = vertical;
   p.azimuth_deg = azimuth_.value();
+  for (const auto& [name, mean] : auxiliary_) p.auxiliary[name] = mean.value();
   return p;
 }
 

@@ -2,8 +2,11 @@
 // Everything measured during one averaging window: the gyro's frames by their counter, and the slow
 // readings taken between the window's first and last frame.
 
+#include <functional>
 #include <limits>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "config/bench.hpp"
@@ -29,7 +32,7 @@ struct PointLabels {
 class MeasurementWindow {
  public:
   /// Starts with frame `begin`. `config` and `gyro` must outlive the window; the watch lends the
-  /// zero of time and the readings shortly before now.
+  /// zero of time, the readings shortly before now, and the channels that a point needs.
   MeasurementWindow(const config::BenchConfig& config, const drivers::Gyro& gyro,
                     const BenchWatch& watch, std::int64_t begin, config::Seconds duration);
 
@@ -59,6 +62,8 @@ class MeasurementWindow {
   Mean target_, ambient_, heater_;
   Mean field_x_, field_y_, field_z_;
   Mean current_horizontal_, current_vertical_, azimuth_;
+  std::map<std::string, Mean, std::less<>> auxiliary_;
+  std::span<const std::string> needed_;
 };
 
 /// The mean of the working sensors, degC; NaN when the thermostat was not read.

@@ -1,5 +1,7 @@
 #include "procedures/plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -29,18 +31,38 @@ Result<config::ProcedureConfig> load_called(const std::string& name,
 Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
                        const Parameters& overrides) {
   std::vector<std::filesystem::path> files;
+  std::vector<std::string> needs;
+  const auto note_needs = [&](const config::ProcedureConfig& its) -> Status {
+    const auto measured = config::auxiliary_channels(bench);
+    for (const std::string& name : its.needs) {
+      if (std::none_of(measured.begin(), measured.end(),
+                       [&](const auto& channel) { return channel.name == name; })) {
+        return Error{ErrorCode::kBadInput,
+                     fmt::format("{}: /needs: no auxiliary sensor of the bench {} measures \"{}\"",
+                                 its.file.filename().string(), bench.name, name)};
+      }
+      if (std::find(needs.begin(), needs.end(), name) == needs.end()) needs.push_back(name);
+    }
+    return {};
+  };
+  if (const Status noted = note_needs(procedure); !noted) return noted.error();
   const auto remember = [&files](const std::filesystem::path& file) {
     if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   };
   remember(procedure.file);
-  auto steps = expand(procedure, overrides, [&](const auto& name, const auto& caller) {
+  const auto load = [&](const auto& name, const auto& caller) -> Result<config::ProcedureConfig> {
     auto called = load_called(name, caller);
-    if (called) remember(called->file);
+    if (!called) return called;
+    remember(called->file);
+    if (const Status noted = note_needs(*called); !noted) return noted.error();
     return called;
-  });
+  };
+  auto steps = expand(procedure, overrides, load);
   if (!steps) return steps.error();
   auto plan = make_plan(procedure.name, std::move(*steps), bench);
-  if (plan) plan->files = std::move(files);
+  if (!plan) return plan;
+  plan->files = std::move(files);
+  plan->needs = std::move(needs);
   return plan;
 }
 
@@ -49,7 +71,7 @@ Result<Plan> make_plan(const std::string& name, std::vector<PlannedStep> steps,
   estimate_durations(steps, bench);
   auto met = check_limits(name, steps, bench);
   if (!met) return met.error();
-  Plan plan{name, std::move(steps), Seconds{0.0}, std::move(*met)};
+  Plan plan{.procedure = name, .steps = std::move(steps), .limits_met = std::move(*met)};
   for (PlannedStep& step : plan.steps) {
     step.says = sentence(step);
     plan.estimate += step.estimate;

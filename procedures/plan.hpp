@@ -82,6 +82,7 @@ struct PlannedStep {
 struct Plan {
   std::string procedure;
   std::vector<PlannedStep> steps;
+  std::vector<std::string> needs;  ///< auxiliary channels without which a point is void
   Seconds estimate{0.0};
   std::vector<std::string> limits_met;  ///< one sentence each: what was checked, and by how much
   std::vector<std::filesystem::path> files;  ///< the procedure's and those of all that it calls

@@ -3,6 +3,8 @@
 // success, the thing is on disk (gyro samples: handed to the chunk writer, on disk within a chunk).
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +33,10 @@ struct Continuation {
 
 /// Everything that made the run, stored with it.
 struct RunHeader {
+  /// A channel that an auxiliary sensor of the bench adds to the record.
+  struct Auxiliary {
+    std::string name, meaning;
+  };
   std::string procedure;
   std::string procedure_json;  ///< the exact files' texts
   std::string bench;
@@ -44,6 +50,7 @@ struct RunHeader {
   double frame_rate_hz = 0.0;
   double reference_rate_deg_per_h = 0.0;
   std::optional<Continuation> continues;
+  std::vector<Auxiliary> auxiliary;  ///< of a run that is read: empty, its points name them
 };
 
 /// An instrument as it identified itself, with its certificate.
@@ -68,6 +75,9 @@ constexpr std::string_view name_of(PointKind kind) {
   }
   return "";
 }
+
+/// What auxiliary sensors say, by channel, in the units of the names. NaN is missing.
+using AuxiliaryValues = std::map<std::string, double, std::less<>>;
 
 /// One averaged measurement. Missing quantities are NaN. Times are since the gyro's power-on.
 struct Point {
@@ -97,6 +107,7 @@ struct Point {
   double current_horizontal_a = 0.0,
          current_vertical_a = 0.0;  ///< measured, with what nulls the ambient field
   double azimuth_deg = 0.0;
+  AuxiliaryValues auxiliary;  ///< means over the window
 };
 
 /// Slow quantities, read about once a second.
@@ -106,6 +117,7 @@ struct MonitorRow {
   drivers::FieldReading field;
   double current_horizontal_a = 0.0, current_vertical_a = 0.0;
   double azimuth_deg = 0.0;
+  AuxiliaryValues auxiliary;
 };
 
 /// A run ends as one of the first three. The last is written when nobody ended it and another run

@@ -112,6 +112,7 @@ Result<ResumePlan> resume_plan(const Plan& whole, std::size_t at,
   if (!plan) return plan.error();
   resumed.plan = std::move(*plan);
   resumed.plan.files = whole.files;
+  resumed.plan.needs = whole.needs;
   return resumed;
 }
 

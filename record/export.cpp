@@ -5,10 +5,11 @@
 #include <cmath>
 #include <iterator>
 
-#include "record/store.hpp"
+#include "procedures/channel_values.hpp"
 
 namespace fogbench::record {
 using procedures::Point;
+using procedures::point_channels;
 
 namespace {
 
@@ -55,15 +56,23 @@ Status write_points(const std::vector<Point>& points, config::OutputFile& out) {
   fmt::memory_buffer text;
   const auto append = std::back_inserter(text);
   fmt::format_to(append, "run,segment,kind");
-  for (const PointColumn& column : point_columns()) fmt::format_to(append, ",{}", column.name);
-  fmt::format_to(append, ",frames,frames_dropped\n");
+  for (const auto& channel : point_channels()) fmt::format_to(append, ",{}", channel.name);
+  fmt::format_to(append, ",frames,frames_dropped");
+  const auto auxiliary = procedures::auxiliary_names(points);
+  for (const std::string& name : auxiliary) fmt::format_to(append, ",{}", name);
+  text.push_back('\n');
   for (const Point& point : points) {
     fmt::format_to(append, "{},{},{}", point.test, csv_text(point.segment), name_of(point.kind));
-    for (const PointColumn& column : point_columns()) {
+    for (const auto& channel : point_channels()) {
       text.push_back(',');
-      append_number(text, point.*column.value);
+      append_number(text, point.*channel.value);
     }
-    fmt::format_to(append, ",{},{}\n", point.count, point.dropped);
+    fmt::format_to(append, ",{},{}", point.count, point.dropped);
+    for (const std::string& name : auxiliary) {
+      text.push_back(',');
+      append_number(text, procedures::value_of(point.auxiliary, name));
+    }
+    text.push_back('\n');
   }
   return out.write(text_of(text));
 }

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "procedures/channel_values.hpp"
 #include "record/store.hpp"
 
 namespace fogbench::record {
 using procedures::InstrumentRecord;
+using procedures::monitor_channels;
 using procedures::MonitorRow;
 using procedures::Point;
+using procedures::point_channels;
 using procedures::RunEnd;
 using procedures::RunHeader;
 
@@ -25,10 +28,13 @@ std::string placeholders(std::size_t count) {
   return list;
 }
 
-template <class Columns>
-std::string names(const Columns& columns) {
+template <class... Columns>
+std::string names(const Columns&... columns) {
   std::string list;
-  for (const auto& column : columns) list += fmt::format(", {}", column.name);
+  const auto add = [&](const auto& some) {
+    for (const auto& column : some) list += fmt::format(", \"{}\"", column.name);
+  };
+  (add(columns), ...);
   return list;
 }
 
@@ -59,10 +65,12 @@ Status RunLog::prepare() {
       "INSERT INTO events (run, time_s, severity, message, data_json) VALUES (?, ?, ?, ?, ?)",
       fmt::format("INSERT INTO points (run, kind, test, block, segment, frames, frames_dropped{}) "
                   "VALUES ({})",
-                  names(point_columns()), placeholders(7 + point_columns().size())),
+                  names(point_channels(), auxiliary_),
+                  placeholders(7 + point_channels().size() + auxiliary_.size())),
       "UPDATE points SET void_because = ? WHERE run = ? AND block = ? AND void_because IS NULL",
-      fmt::format("INSERT INTO monitor (run{}, mode) VALUES ({})", names(monitor_columns()),
-                  placeholders(2 + monitor_columns().size())),
+      fmt::format("INSERT INTO monitor (run{}, mode) VALUES ({})",
+                  names(monitor_channels(), auxiliary_),
+                  placeholders(2 + monitor_channels().size() + auxiliary_.size())),
       "INSERT INTO gyro_chunks VALUES (?, ?, ?, ?, ?, ?, ?, ?)"};
   std::vector<Statement> prepared;
   for (const std::string& text : sql) {
@@ -75,6 +83,17 @@ Status RunLog::prepare() {
                  std::move(prepared[3]), std::move(prepared[4]), std::move(prepared[5]),
                  std::move(prepared[6])});
   return {};
+}
+
+Status RunLog::take_channels(const std::vector<RunHeader::Auxiliary>& channels) {
+  for (const auto& channel : channels) {
+    for (const std::string_view table : {"points", "monitor"}) {
+      const Status added = add_column(*database_, table, channel.name, channel.meaning);
+      if (!added) return added;
+    }
+  }
+  auxiliary_ = channels;
+  return prepare();
 }
 
 template <class Write>
@@ -103,6 +122,7 @@ Result<std::int64_t> RunLog::begin_run(const RunHeader& header,
   chunk_hashes_.clear();
   pending_.clear();
   monitor_.clear();
+  if (const Status ready = take_channels(header.auxiliary); !ready) return ready.error();
   auto insert = database_->prepare(
       "INSERT INTO runs (procedure, procedure_json, bench, bench_json, scenario_json, seed, "
       "gyro_serial_number, operator_name, software_version, started_at, frame_rate_hz, "
@@ -219,7 +239,9 @@ Status RunLog::point(const Point& point) {
     insert.bind(std::int64_t{point.block}).bind(point.segment);
     insert.bind(static_cast<std::int64_t>(point.count));
     insert.bind(static_cast<std::int64_t>(point.dropped));
-    for (const PointColumn& column : point_columns()) insert.bind(point.*column.value);
+    for (const auto& channel : point_channels()) insert.bind(point.*channel.value);
+    for (const auto& channel : auxiliary_)
+      insert.bind(procedures::value_of(point.auxiliary, channel.name));
     return insert.run();
   });
 }
@@ -245,7 +267,9 @@ Status RunLog::write_monitor() {
   Statement& insert = statements_->monitor;
   for (const MonitorRow& row : monitor_) {
     insert.bind(run_);
-    for (const MonitorColumn& column : monitor_columns()) insert.bind(column.value(row));
+    for (const auto& channel : monitor_channels()) insert.bind(channel.value(row));
+    for (const auto& channel : auxiliary_)
+      insert.bind(procedures::value_of(row.auxiliary, channel.name));
     insert.bind(name_of(row.thermostat.mode));
     if (const Status ok = insert.run(); !ok) return ok;
   }

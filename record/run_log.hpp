@@ -43,6 +43,8 @@ class RunLog final : public procedures::Recorder {
 
  private:
   RunLog(std::unique_ptr<Database> database, std::unique_ptr<WritingLock> writing);
+  /// The run's own channels, with a column each.
+  Status take_channels(const std::vector<procedures::RunHeader::Auxiliary>& channels);
   Status prepare();
   /// Whether a commit waits for the disk: kFull outlives a power cut, kNormal the process's death.
   enum class Sync { kNormal, kFull };
@@ -64,6 +66,7 @@ class RunLog final : public procedures::Recorder {
   std::int64_t step_ = 0;  ///< the row of the step under way
   std::int64_t chunk_ = 0;
   std::vector<std::byte> chunk_hashes_;
+  std::vector<procedures::RunHeader::Auxiliary> auxiliary_;  ///< of the run under way
   std::vector<procedures::MonitorRow> monitor_;
   drivers::GyroBlock pending_;
   ChunkEncoder encoder_;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <utility>
 
+#include "procedures/channel_values.hpp"
 #include "record/chunk_codec.hpp"
 #include "record/store.hpp"
 #include "record/writing_lock.hpp"
@@ -161,15 +162,25 @@ Result<StoredRun> RunLogReader::run(std::int64_t run) {
                    : fmt::format("{}: no run {}: its last run is {}", path_.string(), run, *last)};
 }
 
+Result<std::vector<std::string>> RunLogReader::number_columns(const std::string& table) {
+  auto select = database_->prepare("SELECT name FROM pragma_table_info(?) WHERE type = 'REAL'");
+  if (!select) return select.error();
+  select->bind(table);
+  return collect<std::string>(*select, [&] { return select->text(0); });
+}
+
 Result<std::vector<StoredPoint>> RunLogReader::points(std::int64_t run) {
   std::string sql = "SELECT kind, test, block, segment, frames, frames_dropped, void_because";
-  for (const PointColumn& column : point_columns()) {
+  auto columns = number_columns("points");
+  if (!columns) return columns.error();
+  for (const auto& channel : procedures::point_channels()) {
     // A store of an older version lacks the columns that came later.
-    const auto there = database_->integer(fmt::format(
-        "SELECT count(*) FROM pragma_table_info('points') WHERE name = '{}'", column.name));
-    if (!there) return there.error();
-    sql += *there != 0 ? fmt::format(", {}", column.name) : ", NULL";
+    const auto there = std::find(columns->begin(), columns->end(), channel.name);
+    sql += there != columns->end() ? fmt::format(", {}", channel.name) : ", NULL";
+    if (there != columns->end()) columns->erase(there);
   }
+  // What is left are the auxiliary sensors'.
+  for (const std::string& name : *columns) sql += fmt::format(", \"{}\"", name);
   auto select = database_->prepare(sql + " FROM points WHERE run = ? ORDER BY point");
   if (!select) return select.error();
   select->bind(run);
@@ -184,7 +195,13 @@ Result<std::vector<StoredPoint>> RunLogReader::points(std::int64_t run) {
     point.dropped = static_cast<std::uint64_t>(select->integer(5));
     stored.void_because = select->text(6);
     int index = 7;
-    for (const PointColumn& column : point_columns()) point.*column.value = select->real(index++);
+    for (const auto& channel : procedures::point_channels()) {
+      point.*channel.value = select->real(index++);
+    }
+    for (const std::string& name : *columns) {
+      if (!select->is_null(index)) point.auxiliary[name] = select->real(index);
+      ++index;
+    }
     return stored;
   });
 }

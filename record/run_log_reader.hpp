@@ -82,6 +82,7 @@ class RunLogReader {
 
  private:
   RunLogReader(std::unique_ptr<Database> database, std::filesystem::path path);
+  Result<std::vector<std::string>> number_columns(const std::string& table);
   std::string select_runs() const;
   std::unique_ptr<Database> database_;
   std::filesystem::path path_;

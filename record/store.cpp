@@ -7,76 +7,16 @@
 #include <string>
 #include <system_error>
 
+#include "config/channels.hpp"
 #include "config/units.hpp"
+#include "procedures/channel_values.hpp"
 
 namespace fogbench::record {
 namespace fs = std::filesystem;
-using procedures::MonitorRow;
-using procedures::Point;
 
 namespace {
 
-constexpr PointColumn kPointColumns[] = {
-    {"time_s", "centre of the averaging window since power-on", &Point::time_s},
-    {"duration_s", "length of the averaging window", &Point::duration_s},
-    {"rate_deg_per_h", "mean rate, reference rate subtracted", &Point::rate_deg_per_h},
-    {"rate_std_deg_per_h", "scatter of the samples in the window", &Point::rate_std_deg_per_h},
-    {"rate_std_error_deg_per_h", "scatter over sqrt(frames): white noise only, a lower bound",
-     &Point::rate_std_error_deg_per_h},
-    {"temperature_c", "mean of the two working sensors", &Point::temperature_c},
-    {"temperature_start_c", "temperature at the window's start, freed of the sensors' lag",
-     &Point::temperature_start_c},
-    {"temperature_end_c", "temperature at the window's end, freed of the sensors' lag",
-     &Point::temperature_end_c},
-    {"temperature_rate_c_per_h", "mean over the window, freed of the sensors' lag",
-     &Point::temperature_rate_c_per_h},
-    {"temperature_gradient_c", "working sensor 1 minus working sensor 2",
-     &Point::temperature_gradient_c},
-    {"temperature_control_c", "control sensor", &Point::temperature_control_c},
-    {"target_c", "thermostat's target", &Point::target_c},
-    {"ambient_c", "air around the gyro", &Point::ambient_c},
-    {"heater_w", "heating power, all heaters", &Point::heater_w},
-    {"field_x_ut", "measured field along the gyro's x axis", &Point::field_x_ut},
-    {"field_y_ut", "measured field along the gyro's y axis", &Point::field_y_ut},
-    {"field_z_ut", "measured field along the gyro's z axis", &Point::field_z_ut},
-    {"field_set_ut", "commanded level of a sweep; NULL outside one", &Point::field_set_ut},
-    {"coil_current_a", "measured current of the energised pair", &Point::coil_current_a},
-    {"current_horizontal_a", "measured current of the horizontal pair",
-     &Point::current_horizontal_a},
-    {"current_vertical_a", "measured current of the vertical pair", &Point::current_vertical_a},
-    {"azimuth_deg", "azimuth of the gyro", &Point::azimuth_deg},
-};
-
-constexpr MonitorColumn kMonitorColumns[] = {
-    {"time_s", "since power-on", [](const MonitorRow& row) { return row.time_s; }},
-    {"temperature_working_1_c", "working sensor 1",
-     [](const MonitorRow& row) { return row.thermostat.working_1.value; }},
-    {"temperature_working_2_c", "working sensor 2",
-     [](const MonitorRow& row) { return row.thermostat.working_2.value; }},
-    {"temperature_control_c", "control sensor",
-     [](const MonitorRow& row) { return row.thermostat.control.value; }},
-    {"ambient_c", "air around the gyro",
-     [](const MonitorRow& row) { return row.thermostat.ambient.value; }},
-    {"target_c", "thermostat's target",
-     [](const MonitorRow& row) { return row.thermostat.target.value; }},
-    {"boost_w", "boost heaters' power",
-     [](const MonitorRow& row) { return row.thermostat.boost_power.value; }},
-    {"normal_w", "normal heater's power",
-     [](const MonitorRow& row) { return row.thermostat.normal_power.value; }},
-    {"field_x_ut", "measured field along the gyro's x axis",
-     [](const MonitorRow& row) { return row.field.field[0].value; }},
-    {"field_y_ut", "measured field along the gyro's y axis",
-     [](const MonitorRow& row) { return row.field.field[1].value; }},
-    {"field_z_ut", "measured field along the gyro's z axis",
-     [](const MonitorRow& row) { return row.field.field[2].value; }},
-    {"current_horizontal_a", "measured current of the horizontal pair",
-     [](const MonitorRow& row) { return row.current_horizontal_a; }},
-    {"current_vertical_a", "measured current of the vertical pair",
-     [](const MonitorRow& row) { return row.current_vertical_a; }},
-    {"azimuth_deg", "azimuth of the gyro", [](const MonitorRow& row) { return row.azimuth_deg; }},
-};
-
-// Everything but the columns that point_columns() and monitor_columns() list.
+// Everything but the columns that procedures/channel_values.hpp lists.
 constexpr auto kTables = R"(
 CREATE TABLE runs (
   run INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -161,29 +101,22 @@ Status create_schema(Database& database) {
       "CREATE TABLE monitor (run INTEGER NOT NULL REFERENCES runs{}, mode TEXT);"
       "CREATE INDEX monitor_of_run ON monitor (run);"
       "PRAGMA application_id = {}; PRAGMA user_version = {}",
-      kTables, real_columns(point_columns()), real_columns(monitor_columns()), kApplicationId,
-      kSchemaVersion);
+      kTables, real_columns(procedures::point_channels()),
+      real_columns(procedures::monitor_channels()), kApplicationId, kSchemaVersion);
   if (const Status ok = database.execute(sql); !ok) return ok;
-  if (const Status ok = describe(database, "points", point_columns()); !ok) return ok;
-  if (const Status ok = describe(database, "monitor", monitor_columns()); !ok) return ok;
+  if (const Status ok = describe(database, "points", procedures::point_channels()); !ok) return ok;
+  if (const Status ok = describe(database, "monitor", procedures::monitor_channels()); !ok)
+    return ok;
   return transaction->commit();
 }
 
 /// A store of an older version gets the columns of points that came later; its rows have no values
 /// there.
 Status add_new_columns(Database& database) {
-  for (const PointColumn& column : point_columns()) {
-    const auto there = database.integer(fmt::format(
-        "SELECT count(*) FROM pragma_table_info('points') WHERE name = '{}'", column.name));
-    if (!there) return there.error();
-    if (*there != 0) continue;
-    auto transaction = Transaction::begin(database);
-    if (!transaction) return transaction.error();
-    const Status added =
-        database.execute(fmt::format("ALTER TABLE points ADD COLUMN {} REAL", column.name));
-    if (!added) return added;
-    if (const Status ok = describe(database, "points", std::span(&column, 1)); !ok) return ok;
-    if (const Status ok = transaction->commit(); !ok) return ok;
+  for (const procedures::PointChannel& channel : procedures::point_channels()) {
+    if (const Status ok = add_column(database, "points", channel.name, channel.meaning); !ok) {
+      return ok;
+    }
   }
   return {};
 }
@@ -261,12 +194,20 @@ Status create_store(const fs::path& path) {
 
 }  // namespace
 
-std::span<const PointColumn> point_columns() {
-  return kPointColumns;
-}
-
-std::span<const MonitorColumn> monitor_columns() {
-  return kMonitorColumns;
+Status add_column(Database& database, std::string_view table, std::string_view name,
+                  std::string_view meaning) {
+  const auto there = database.integer(
+      fmt::format("SELECT count(*) FROM pragma_table_info('{}') WHERE name = '{}'", table, name));
+  if (!there) return there.error();
+  if (*there != 0) return {};
+  auto transaction = Transaction::begin(database);
+  if (!transaction) return transaction.error();
+  const Status added =
+      database.execute(fmt::format("ALTER TABLE {} ADD COLUMN \"{}\" REAL", table, name));
+  if (!added) return added;
+  const config::Channel channel{name, meaning};
+  if (const Status ok = describe(database, table, std::span(&channel, 1)); !ok) return ok;
+  return transaction->commit();
 }
 
 Result<fs::path> default_store() {

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "config/result.hpp"
-#include "procedures/recorder.hpp"
 #include "record/sqlite.hpp"
 
 namespace fogbench::record {
@@ -14,22 +13,6 @@ namespace fogbench::record {
 /// "FOGB", in the file's header: tells a run log from any other database.
 inline constexpr int kApplicationId = 0x464F4742;
 inline constexpr int kSchemaVersion = 2;
-
-/// The columns of table `points` that are plain numbers, in the order of schema and exports.
-struct PointColumn {
-  std::string_view name;
-  std::string_view meaning;
-  double procedures::Point::*value;
-};
-std::span<const PointColumn> point_columns();
-
-/// The same for table `monitor`.
-struct MonitorColumn {
-  std::string_view name;
-  std::string_view meaning;
-  double (*value)(const procedures::MonitorRow& row);
-};
-std::span<const MonitorColumn> monitor_columns();
 
 /// $FOGBENCH_STORE; else $XDG_STATE_HOME/fogbench/fogbench.db; else
 /// ~/.local/state/fogbench/fogbench.db. kBadInput when none of the variables is set.
@@ -50,5 +33,10 @@ Result<std::unique_ptr<Database>> open_store(const std::filesystem::path& path);
 /// at all. An empty file becomes one, and so does what a link points to. Missing folders are made
 /// for the default store only.
 Result<std::unique_ptr<Database>> open_store_for_writing(const std::filesystem::path& path);
+
+/// Adds the column of a channel that the table lacks, and describes it; nothing where it is there.
+/// Precondition: the names are a table's and an identifier.
+Status add_column(Database& database, std::string_view table, std::string_view name,
+                  std::string_view meaning);
 
 }  // namespace fogbench::record

@@ -15,12 +15,15 @@ namespace {
 constexpr std::array<std::string_view, 6> kDevices = {
     "thermostat", "coil_horizontal", "coil_vertical", "magnetometer", "turntable", "gyro"};
 
-Status check_devices(const std::vector<config::FaultSpec>& faults) {
+Status check_devices(const std::vector<config::FaultSpec>& faults,
+                     const config::BenchConfig& bench) {
+  std::vector<std::string_view> devices(kDevices.begin(), kDevices.end());
+  for (const auto& sensor : bench.auxiliary) devices.push_back(sensor.name);
   for (std::size_t i = 0; i < faults.size(); ++i) {
-    if (std::find(kDevices.begin(), kDevices.end(), faults[i].device) != kDevices.end()) continue;
+    if (std::find(devices.begin(), devices.end(), faults[i].device) != devices.end()) continue;
     return Error{ErrorCode::kBadInput,
                  fmt::format("scenario: /faults/{}: no device \"{}\"; the bench has {}", i,
-                             faults[i].device, fmt::join(kDevices, ", "))};
+                             faults[i].device, fmt::join(devices, ", "))};
   }
   return {};
 }
@@ -52,6 +55,37 @@ class Lines {
   drivers::Clock::Duration late_by_;
 };
 
+Result<AuxiliaryEnd> far_end_of(const config::AuxiliaryConfig& sensor, const Lines& lines,
+                                std::uint64_t seed) {
+  const auto make = [&]<class Device>(const Device& device) -> Result<AuxiliaryEnd> {
+    if constexpr (std::is_same_v<Device, config::ModbusSensor>) {
+      auto line = lines.to(sensor.name, ModbusFarEnd::kFaults);
+      if (!line) return line.error();
+      config::ModbusDevice map;
+      map.unit_id = device.unit_id;
+      for (const auto& channel : device.channels) map.registers.push_back(channel.place());
+      return AuxiliaryEnd{sensor.name, std::make_unique<ModbusFarEnd>(map, *std::move(line))};
+    } else if constexpr (std::is_same_v<Device, config::ScpiSensor>) {
+      auto line = lines.to(sensor.name, ScpiFarEnd::kFaults);
+      if (!line) return line.error();
+      return AuxiliaryEnd{
+          sensor.name, std::make_unique<ScpiFarEnd>(device.dialogue(), make_sensor_output(device),
+                                                    *std::move(line))};
+    } else if constexpr (std::is_same_v<Device, config::HidSensor>) {
+      auto line = lines.to(sensor.name, HidFarEnd::kFaults);
+      if (!line) return line.error();
+      return AuxiliaryEnd{sensor.name, std::make_unique<HidFarEnd>(
+                                           device.layout(), config::MagneticPlant{},
+                                           *std::move(line), derive_seed(seed, sensor.name))};
+    } else {
+      auto line = lines.to(sensor.name, LineFarEnd::kFaults);
+      if (!line) return line.error();
+      return AuxiliaryEnd{sensor.name, std::make_unique<LineFarEnd>(device, *std::move(line))};
+    }
+  };
+  return std::visit(make, sensor.device);
+}
+
 }  // namespace
 
 void FarEnds::set_fault(std::string_view device, FaultKind kind, bool on) {
@@ -60,8 +94,11 @@ void FarEnds::set_fault(std::string_view device, FaultKind kind, bool on) {
   if (device == "coil_vertical") return coil_vertical->set_fault(kind, on);
   if (device == "magnetometer") return magnetometer->set_fault(kind, on);
   if (device == "turntable") return turntable->set_fault(kind, on);
-  assert(device == "gyro");
-  gyro->set_fault(kind, on);
+  if (device == "gyro") return gyro->set_fault(kind, on);
+  const auto sensor = std::find_if(auxiliary.begin(), auxiliary.end(),
+                                   [&](const AuxiliaryEnd& its) { return its.name == device; });
+  assert(sensor != auxiliary.end());
+  std::visit([&](auto& end) { end->set_fault(kind, on); }, sensor->end);
 }
 
 Result<FarEnds> make_far_ends(const config::BenchConfig& config,
@@ -73,7 +110,7 @@ Result<FarEnds> make_far_ends(const config::BenchConfig& config,
                  "gyro by hand; fogbench plan shows a procedure on this bench, and a copy of it "
                  "with the turntable of the bench simulated can be run dry"};
   }
-  if (Status s = check_devices(scenario.faults); !s) return s.error();
+  if (Status s = check_devices(scenario.faults, config); !s) return s.error();
   Result<std::unique_ptr<Plant>> made = Plant::create(config, scenario, seed, clock);
   if (!made) return made.error();
   const std::shared_ptr<Plant> plant = *std::move(made);
@@ -114,6 +151,11 @@ Result<FarEnds> make_far_ends(const config::BenchConfig& config,
     ends.magnetometer =
         std::make_unique<HidFarEnd>(config.magnetometer.device, config.simulation.magnetic,
                                     *std::move(line), derive_seed(seed, "magnetometer"));
+  }
+  for (const config::AuxiliaryConfig& sensor : config.auxiliary) {
+    auto end = far_end_of(sensor, lines, seed);
+    if (!end) return end.error();
+    ends.auxiliary.push_back(*std::move(end));
   }
   Result<FaultSchedule> faults =
       FaultSchedule::create(scenario.faults, "gyro", GyroFarEnd::kFaults);

@@ -3,16 +3,27 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include "config/bench.hpp"
 #include "config/scenario.hpp"
 #include "simulator/gyro_far_end.hpp"
 #include "simulator/hid_far_end.hpp"
+#include "simulator/line_far_end.hpp"
 #include "simulator/modbus_far_end.hpp"
 #include "simulator/scpi_far_end.hpp"
 
 namespace fogbench::simulator {
+
+struct AuxiliaryEnd {
+  std::string name;
+  std::variant<std::unique_ptr<ModbusFarEnd>, std::unique_ptr<ScpiFarEnd>,
+               std::unique_ptr<HidFarEnd>, std::unique_ptr<LineFarEnd>>
+      end;
+};
 
 /// They share the plant and keep it alive; none may be used from two threads at once.
 struct FarEnds {
@@ -22,7 +33,8 @@ struct FarEnds {
   std::unique_ptr<HidFarEnd> magnetometer;
   std::unique_ptr<ScpiFarEnd> turntable;
   std::unique_ptr<GyroFarEnd> gyro;
-  std::shared_ptr<Plant> plant;  ///< what is true, whatever they say
+  std::vector<AuxiliaryEnd> auxiliary;  ///< in the order of the bench
+  std::shared_ptr<Plant> plant;         ///< what is true, whatever they say
 
   /// A fault by hand, from now on until it is switched off. Precondition: the bench has the device.
   void set_fault(std::string_view device, FaultKind kind, bool on);

@@ -107,8 +107,11 @@ void HidFarEnd::encode(std::int64_t number, std::span<std::uint8_t> report) {
       value += spec.scale;
     } else if (is_field(spec)) {
       value = reported[static_cast<std::size_t>(spec.name.back() - 'x') % 3];
+    } else if (const auto measured = line_.plant().auxiliary(spec.name)) {
+      value = *measured;
     }
-    const bool no_number = is_field(spec) && line_.fault(FaultKind::kNan);
+    const bool no_number =
+        spec.name != "sequence" && spec.name != "status" && line_.fault(FaultKind::kNan);
     if (no_number || !drivers::write_field(spec, device_.byte_order, value, report)) {
       const std::uint32_t nothing = spec.type == NumberType::kFloat32 ? 0x7FC00000U : 0x80000000U;
       const std::size_t bytes = drivers::byte_count(spec.type);

@@ -1,6 +1,6 @@
 #pragma once
-// The magnetometer at its HID input reports: one each report period, counted by the field
-// `sequence`, laid out as the instrument's description says. Reported is
+// The magnetometer, or an auxiliary sensor, at its HID input reports: one each report period,
+// counted by the field `sequence`, laid out as the instrument's description says. Reported is
 // matrix * true field (gyro axes) + offset + noise, limited to the range.
 
 #include <cstdint>

@@ -45,6 +45,10 @@ Status check_domain(const std::string& where, const EffectParameter& parameter, 
 }  // namespace
 
 Status HiddenEffects::add(const config::HiddenEffect& hidden, const std::string& where) {
+  if (auto channel = sensitive_to(hidden.effect)) {
+    terms_.push_back({hidden.amplitude, false, sensitivity_to(*std::move(channel))});
+    return {};
+  }
   const Result<const EffectEntry*> found = find(where, hidden.effect);
   if (!found) return found.error();
   const EffectEntry& entry = **found;

@@ -127,8 +127,9 @@ Status ModbusFarEnd::apply(const RegisterSpec& spec, double value) {
   return {};
 }
 
-double ModbusFarEnd::value_of(const RegisterSpec& spec) const {
-  const Plant& plant = line_.plant();
+double ModbusFarEnd::value_of(const RegisterSpec& spec) {
+  Plant& plant = line_.plant();
+  if (const auto measured = plant.auxiliary(spec.name)) return *measured;
   const ThermostatController& controller = plant.thermostat();
   if (spec.name == "temperature_working_1") return controller.sensors_c()[0];
   if (spec.name == "temperature_working_2") return controller.sensors_c()[1];
@@ -151,7 +152,8 @@ void ModbusFarEnd::encode(const RegisterSpec& spec, std::span<std::uint16_t> wor
     for (std::uint16_t& word : words) word = static_cast<std::uint16_t>(line_.random()());
     return;
   }
-  const bool measured = spec.name.starts_with("temperature_");
+  const bool measured =
+      spec.name.starts_with("temperature_") || line_.plant().has_auxiliary(spec.name);
   if (measured && line_.fault(FaultKind::kNan)) return encode_no_number(spec, words);
   const bool stuck = measured && line_.fault(FaultKind::kStuck) && memory_.contains(spec.name);
   const double value = stuck ? memory_[spec.name] : value_of(spec);

@@ -1,7 +1,8 @@
 #pragma once
-// The thermostat controller as a Modbus server: holding registers at the addresses, types, scales
-// and word orders of the instrument's description, over the plant's controller. A register that
-// the description names and the controller does not know is plain memory.
+// The thermostat controller, or an auxiliary sensor, as a Modbus server: holding registers at the
+// addresses, types, scales and word orders of the instrument's description, over the plant's
+// controller and its auxiliary quantities. A register that the description names and neither knows
+// is plain memory.
 //
 // Exception answers as the standard has them: 2 for an address that is no register, a part of a
 // number, or one that may not be read or written so; 3 for an odd count where only even ones are
@@ -39,7 +40,7 @@ class ModbusFarEnd final : public drivers::ModbusTransport {
   std::string_view write_operation(std::uint16_t address) const;
   Status check_count(std::size_t count);
   Error exception(int code);
-  double value_of(const config::RegisterSpec& spec) const;
+  double value_of(const config::RegisterSpec& spec);
   Status apply(const config::RegisterSpec& spec, double value);
   void encode(const config::RegisterSpec& spec, std::span<std::uint16_t> words);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace fogbench::simulator {
 namespace {
@@ -22,6 +23,17 @@ Result<std::unique_ptr<Plant>> Plant::create(const config::BenchConfig& bench,
   }
   Result<HiddenEffects> effects = HiddenEffects::create(scenario);
   if (!effects) return effects.error();
+  const auto channels = config::auxiliary_channels(bench);
+  for (const config::HiddenEffect& hidden : scenario.hidden) {
+    const auto channel = sensitive_to(hidden.effect);
+    if (!channel || std::any_of(channels.begin(), channels.end(),
+                                [&](const auto& known) { return known.name == *channel; })) {
+      continue;
+    }
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("scenario: {}: no auxiliary sensor of the bench {} measures it",
+                             hidden.effect, bench.name)};
+  }
   return std::unique_ptr<Plant>(
       new Plant(bench, *std::move(effects), scenario.reference_temperature.value, seed, clock));
 }
@@ -41,6 +53,10 @@ Plant::Plant(const config::BenchConfig& bench, HiddenEffects effects,
       turntable_noise_(derive_seed(seed, "turntable")) {
   state_.step_s = step_s_;
   state_.reference_temperature_c = reference_temperature_c;
+  for (const config::SensorChannel& channel : config::auxiliary_channels(bench)) {
+    auxiliary_.emplace(channel.name,
+                       Auxiliary{channel.simulated, NormalSource(derive_seed(seed, channel.name))});
+  }
   observe();
 }
 
@@ -55,6 +71,13 @@ void Plant::advance() {
 
 Vector3 Plant::field_ut() const {
   return to_gyro_axes(magnetic_.field_ut(), state_.azimuth_deg);
+}
+
+std::optional<double> Plant::auxiliary(std::string_view channel) {
+  const auto found = auxiliary_.find(channel);
+  if (found == auxiliary_.end()) return std::nullopt;
+  Auxiliary& its = found->second;
+  return its.goes.mean + state_.auxiliary.find(channel)->second + its.goes.noise * its.noise();
 }
 
 void Plant::rotate_to(double azimuth_deg) {
@@ -88,6 +111,10 @@ void Plant::observe() {
   state_.azimuth_deg = encoder_deg_ + azimuth_error_deg_;
   state_.field_100ut = field_ut();
   for (double& h : state_.field_100ut) h /= 100.0;
+  for (const auto& [name, its] : auxiliary_) {
+    const double turns = state_.time_s / its.goes.period.count();
+    state_.auxiliary[name] = its.goes.swing * std::sin(2.0 * std::numbers::pi * turns);
+  }
   state_.sum_squared_current_a2 = magnetic_.sum_squared_current_a2();
 }
 

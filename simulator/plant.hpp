@@ -7,7 +7,11 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "config/bench.hpp"
 #include "config/scenario.hpp"
@@ -53,6 +57,10 @@ class Plant {
   /// Gyro axes.
   Vector3 field_ut() const;
 
+  /// What a sensor of that channel reads now, noise included; nothing where the bench has none.
+  std::optional<double> auxiliary(std::string_view channel);
+  bool has_auxiliary(std::string_view channel) const { return auxiliary_.contains(channel); }
+
   /// The turntable starts to move, a quarter turn in `move_time` of the bench's configuration.
   void rotate_to(double azimuth_deg);
   /// As its encoder says; the true azimuth differs by the repeatability.
@@ -85,6 +93,11 @@ class Plant {
   HiddenEffects effects_;
   NormalSource turntable_noise_;
   bool heaters_open_ = false;
+  struct Auxiliary {
+    config::SimulatedQuantity goes;
+    NormalSource noise;
+  };
+  std::map<std::string, Auxiliary, std::less<>> auxiliary_;
   double encoder_deg_ = 0.0;
   double encoder_target_deg_ = 0.0;
   double azimuth_error_deg_ = 0.0;

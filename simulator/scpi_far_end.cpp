@@ -99,8 +99,10 @@ void ScpiFarEnd::execute(std::string_view text) {
     output_->switch_output(line_.plant(), true);
   } else if (same(command, device_.output_off)) {
     output_->switch_output(line_.plant(), false);
-  } else if (header == header_of(device_.set)) {
+  } else if (!device_.set.empty() && header == header_of(device_.set)) {
     set(argument);
+  } else if (const auto measured = output_->answer_to(line_.plant(), text)) {
+    answer(number(*measured, last_measurement_));
   } else if (!is_one_of(command, device_.initialise)) {
     fail(-113, "Undefined header");
   }

@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include "config/device.hpp"
+#include "config/sensor.hpp"
 #include "drivers/transport.hpp"
 #include "simulator/instrument_line.hpp"
 
@@ -30,6 +31,10 @@ class ScpiOutput {
   virtual double setpoint() const = 0;
   virtual double measure(const Plant& plant) = 0;
   virtual void switch_output(Plant& plant, bool on) = 0;
+  /// The number that answers a question of its own; nothing for what is no such question.
+  virtual std::optional<double> answer_to(Plant& /*plant*/, std::string_view /*question*/) {
+    return std::nullopt;
+  }
   /// The circuit that it drives is open, or whole again.
   virtual void open_circuit(Plant& /*plant*/, bool /*open*/) {}
 };
@@ -38,6 +43,8 @@ class ScpiOutput {
 std::unique_ptr<ScpiOutput> make_supply_output(const config::ScpiDevice& device,
                                                MagneticPhysics::Pair pair, double bits,
                                                std::uint64_t seed);
+/// A sensor, which drives nothing and answers the questions of its description.
+std::unique_ptr<ScpiOutput> make_sensor_output(const config::ScpiSensor& sensor);
 /// The turntable's motor.
 std::unique_ptr<ScpiOutput> make_turntable_output();
 

@@ -1,4 +1,4 @@
-// What the bench's two kinds of SCPI instruments drive: a coil pair's current, the turntable.
+// What the bench's SCPI instruments drive, a coil pair's current, the turntable, or measure.
 
 #include <algorithm>
 #include <utility>
@@ -84,12 +84,37 @@ class TurntableOutput final : public ScpiOutput {
   double setpoint_deg_ = 0.0;
 };
 
+class SensorOutput final : public ScpiOutput {
+ public:
+  explicit SensorOutput(config::ScpiSensor sensor) : sensor_(std::move(sensor)) {}
+
+  void set(Plant& /*plant*/, double /*value*/) override {}
+  double setpoint() const override { return 0.0; }
+  double measure(const Plant& /*plant*/) override { return 0.0; }
+  void switch_output(Plant& /*plant*/, bool /*on*/) override {}
+  std::optional<double> answer_to(Plant& plant, std::string_view question) override {
+    for (const config::QueryChannel& channel : sensor_.channels) {
+      if (channel.query != question) continue;
+      const auto value = plant.auxiliary(channel.name);
+      if (value) return (*value - channel.offset) / channel.scale;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const config::ScpiSensor sensor_;
+};
+
 }  // namespace
 
 std::unique_ptr<ScpiOutput> make_supply_output(const config::ScpiDevice& device,
                                                MagneticPhysics::Pair pair, double bits,
                                                std::uint64_t seed) {
   return std::make_unique<SupplyOutput>(device, pair, bits, seed);
+}
+
+std::unique_ptr<ScpiOutput> make_sensor_output(const config::ScpiSensor& sensor) {
+  return std::make_unique<SensorOutput>(sensor);
 }
 
 std::unique_ptr<ScpiOutput> make_turntable_output() {

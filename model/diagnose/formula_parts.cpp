@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/channels.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "model/effects/expression.hpp"
-#include "model/table/measurement_columns.hpp"
 #include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {
@@ -27,7 +27,7 @@ class Parts {
   explicit Parts(const Signals& signals) : signals_(signals) {
     for (MovingSignal& s : moving_signals(signals)) variables_.push_back(std::move(s));
     for (const std::string& name : signals.table().column_names()) {
-      if (is_measurement_column(name) || is_made_for_analysis(name)) continue;
+      if (config::is_point_channel(name) || is_made_for_analysis(name)) continue;
       if (auto s = moving_signal(signals, name)) variables_.push_back(std::move(*s));
     }
   }

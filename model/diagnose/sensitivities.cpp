@@ -7,9 +7,9 @@
 #include <cmath>
 #include <set>
 
+#include "config/channels.hpp"
 #include "model/diagnose/library_builder.hpp"
 #include "model/effects/sensitivity.hpp"
-#include "model/table/measurement_columns.hpp"
 #include "model/table/median.hpp"
 #include "model/table/moving_signals.hpp"
 
@@ -128,7 +128,7 @@ void add_sensitivities(LibraryBuilder& builder) {
   const Signals& signals = builder.signals();
   std::size_t tried = 0;
   for (const std::string& name : signals.table().column_names()) {
-    if (is_measurement_column(name) || is_made_for_analysis(name) ||
+    if (config::is_point_channel(name) || is_made_for_analysis(name) ||
         name == builder.source().model.observable) {
       continue;
     }

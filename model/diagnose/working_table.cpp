@@ -8,11 +8,11 @@
 #include <numeric>
 #include <span>
 
+#include "config/channels.hpp"
 #include "model/diagnose/thermometer.hpp"
 #include "model/fit/design.hpp"
 #include "model/noise/stated_errors.hpp"
 #include "model/table/condense.hpp"
-#include "model/table/measurement_columns.hpp"
 #include "model/table/median.hpp"
 #include "model/table/row_order.hpp"
 #include "model/table/signals.hpp"
@@ -208,7 +208,7 @@ Table in_order(const Table& table, const std::string& observable, const std::vec
     } else if (const Status filled = fill_gaps(name, column); !filled) {
       const bool any =
           std::any_of(column.begin(), column.end(), [](double v) { return std::isfinite(v); });
-      if (any && !is_measurement_column(name)) notes.push_back(filled.error().message + ".");
+      if (any && !config::is_point_channel(name)) notes.push_back(filled.error().message + ".");
       out.set_dropped(name, filled.error().message);
       continue;
     }

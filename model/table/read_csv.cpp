@@ -14,10 +14,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include "config/channels.hpp"
 #include "model/table/condense.hpp"
 #include "model/table/csv_fields.hpp"
 #include "model/table/line_reader.hpp"
-#include "model/table/measurement_columns.hpp"
 #include "model/table/table.hpp"
 
 namespace fogbench::model {
@@ -192,7 +192,7 @@ class CsvReader {
     if (name.empty()) return Kind::kIgnored;
     if (name == "run") return Kind::kRun;
     if (name == "segment") return Kind::kSegment;
-    return is_measurement_column(name) ? Kind::kNumber : Kind::kOther;
+    return config::is_point_channel(name) ? Kind::kNumber : Kind::kOther;
   }
 
   Status read_rows() {

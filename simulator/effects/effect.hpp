@@ -4,8 +4,11 @@
 // the two share the identifiers only, so that a wrong equation cannot confirm itself.
 
 #include <functional>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "simulator/magnetic_physics.hpp"
@@ -26,6 +29,7 @@ struct TrueState {
   Vector3 field_100ut{};  ///< gyro axes, in units of 100 uT
   double sum_squared_current_a2 = 0.0;
   double azimuth_deg = 0.0;
+  std::map<std::string, double, std::less<>> auxiliary;  ///< less their means, in their units
 
   double above_reference_c() const { return temperature_c - reference_temperature_c; }
 };
@@ -56,6 +60,12 @@ void add_drift_effects(std::vector<EffectEntry>& entries);
 void add_temperature_effects(std::vector<EffectEntry>& entries);
 void add_magnetic_effects(std::vector<EffectEntry>& entries);
 void add_bench_effects(std::vector<EffectEntry>& entries);
+
+/// The channel of "sensitivity(pressure_hpa)"; nothing for another effect's name.
+std::optional<std::string> sensitive_to(std::string_view id);
+/// The rate follows a quantity that an auxiliary sensor of the bench measures, less its mean; the
+/// amplitude is in deg/h per unit of the channel.
+Regressor sensitivity_to(std::string channel);
 
 /// All effects that the simulator can hide.
 const std::vector<EffectEntry>& all_effects();

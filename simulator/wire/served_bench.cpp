@@ -8,6 +8,7 @@
 
 #include "simulator/wire/gyro_server.hpp"
 #include "simulator/wire/hid_device.hpp"
+#include "simulator/wire/line_server.hpp"
 #include "simulator/wire/modbus_rtu_server.hpp"
 #include "simulator/wire/modbus_tcp_server.hpp"
 #include "simulator/wire/scpi_line_server.hpp"
@@ -87,28 +88,35 @@ Result<std::unique_ptr<ServedBench>> ServedBench::open(const config::BenchConfig
   Result<FarEnds> ends = make_far_ends(config, scenario, seed, bench->clock_, kLateBy);
   if (!ends) return ends.error();
   bench->ends_ = *std::move(ends);
-  if (Status s = bench->serve_thermostat(config.thermostat, options); !s) return s.error();
+  const config::ThermostatConfig& thermostat = config.thermostat;
+  if (Status s = bench->serve_modbus("thermostat", thermostat.connection, thermostat.device.unit_id,
+                                     *bench->ends_.thermostat, options.modbus_port, options);
+      !s) {
+    return s.error();
+  }
   if (Status s = bench->serve_usb(config, options); !s) return s.error();
   if (Status s = bench->serve_lines(config, options); !s) return s.error();
+  if (Status s = bench->serve_auxiliary(config, options); !s) return s.error();
   return bench;
 }
 
-Status ServedBench::serve_thermostat(const config::ThermostatConfig& thermostat,
-                                     const ServeOptions& options) {
-  unit_ = std::make_unique<ModbusUnit>(thermostat.device.unit_id, *ends_.thermostat, clock_);
-  Result<TcpListener> listener = TcpListener::open(options.address, options.modbus_port);
+Status ServedBench::serve_modbus(const std::string& name, const std::string& connection,
+                                 std::uint8_t unit_id, ModbusFarEnd& far_end, std::uint16_t port,
+                                 const ServeOptions& options) {
+  ModbusUnit& unit = *units_.emplace_back(std::make_unique<ModbusUnit>(unit_id, far_end, clock_));
+  Result<TcpListener> listener = TcpListener::open(options.address, port);
   if (!listener) return listener.error();
-  Result<PseudoTerminal> terminal = PseudoTerminal::open(options.tty_folder / "thermostat");
+  Result<PseudoTerminal> terminal = PseudoTerminal::open(options.tty_folder / name);
   if (!terminal) return terminal.error();
-  const auto parts = parts_of(thermostat.connection, 3);
+  const auto parts = parts_of(connection, 3);
   const bool has_baud = parts.size() == 3 && parts[0] == "rtu";
-  instruments_.push_back({.name = "thermostat",
+  instruments_.push_back({.name = name,
                           .connection = fmt::format("tcp:{}:{}", options.address, listener->port()),
                           .also = fmt::format("rtu:{}:{}", terminal->link().string(),
                                               has_baud ? std::string_view(parts[2]) : kUsualBaud)});
   servers_.push_back(
-      std::make_unique<ModbusTcpServer>(*std::move(listener), options.address, *unit_, clock_));
-  servers_.push_back(std::make_unique<ModbusRtuServer>(*std::move(terminal), *unit_, clock_));
+      std::make_unique<ModbusTcpServer>(*std::move(listener), options.address, unit, clock_));
+  servers_.push_back(std::make_unique<ModbusRtuServer>(*std::move(terminal), unit, clock_));
   return {};
 }
 
@@ -144,10 +152,55 @@ Status ServedBench::serve_usb(const config::BenchConfig& config, const ServeOpti
   serve("magnetometer", "hid",
         std::make_unique<HidUsbDevice>(identity, magnetometer, *ends_.magnetometer, clock_));
 
+  for (std::size_t i = 0; i < config.auxiliary.size(); ++i) {
+    const config::AuxiliaryConfig& sensor = config.auxiliary[i];
+    const char* const name = sensor.name.c_str();
+    if (const auto* hid = std::get_if<config::HidSensor>(&sensor.device)) {
+      auto& far_end = *std::get<std::unique_ptr<HidFarEnd>>(ends_.auxiliary[i].end);
+      const UsbIdentity its = identity_of(name, sensor, hid->name, hid->vendor_id, hid->product_id);
+      serve(name, "hid", std::make_unique<HidUsbDevice>(its, hid->layout(), far_end, clock_));
+    } else if (sensor.connection.starts_with("usb:")) {
+      auto& far_end = *std::get<std::unique_ptr<ScpiFarEnd>>(ends_.auxiliary[i].end);
+      const UsbIdentity its =
+          identity_of(name, sensor, name_of(sensor.device), kTestVendor, kTestSupply);
+      serve(name, "usb", std::make_unique<UsbtmcDevice>(its, far_end, clock_));
+    }
+  }
+
   Result<TcpListener> listener = TcpListener::open(options.address, options.usbip_port);
   if (!listener) return listener.error();
   usbip_port_ = listener->port();
   servers_.push_back(std::make_unique<UsbipServer>(*std::move(listener), std::move(devices)));
+  return {};
+}
+
+Status ServedBench::serve_auxiliary(const config::BenchConfig& config,
+                                    const ServeOptions& options) {
+  for (std::size_t i = 0; i < config.auxiliary.size(); ++i) {
+    const config::AuxiliaryConfig& sensor = config.auxiliary[i];
+    auto& end = ends_.auxiliary[i].end;
+    if (const auto* modbus = std::get_if<config::ModbusSensor>(&sensor.device)) {
+      const Status served = serve_modbus(sensor.name, sensor.connection, modbus->unit_id,
+                                         *std::get<std::unique_ptr<ModbusFarEnd>>(end), 0, options);
+      if (!served) return served;
+      continue;
+    }
+    const auto* const lines = std::get_if<config::LineSensor>(&sensor.device);
+    const bool on_usb = std::holds_alternative<config::HidSensor>(sensor.device) ||
+                        sensor.connection.starts_with("usb:");
+    if (on_usb) continue;
+    Result<PseudoTerminal> terminal = PseudoTerminal::open(options.tty_folder / sensor.name);
+    if (!terminal) return terminal.error();
+    instruments_.push_back({.name = sensor.name, .connection = "tty:" + terminal->link().string()});
+    if (lines != nullptr) {
+      servers_.push_back(std::make_unique<LineServer>(
+          *std::move(terminal), *std::get<std::unique_ptr<LineFarEnd>>(end), clock_,
+          drivers::from_seconds(lines->period.count())));
+    } else {
+      servers_.push_back(std::make_unique<ScpiLineServer>(
+          *std::move(terminal), *std::get<std::unique_ptr<ScpiFarEnd>>(end), clock_));
+    }
+  }
   return {};
 }
 

@@ -52,14 +52,17 @@ class ServedBench {
 
  private:
   ServedBench(const drivers::Clock& machine, double speed) : clock_(machine), speed_(speed) {}
-  Status serve_thermostat(const config::ThermostatConfig& thermostat, const ServeOptions& options);
+  /// `port` 0: any.
+  Status serve_modbus(const std::string& name, const std::string& connection, std::uint8_t unit_id,
+                      ModbusFarEnd& far_end, std::uint16_t port, const ServeOptions& options);
   Status serve_usb(const config::BenchConfig& config, const ServeOptions& options);
+  Status serve_auxiliary(const config::BenchConfig& config, const ServeOptions& options);
   Status serve_lines(const config::BenchConfig& config, const ServeOptions& options);
 
   DeferringClock clock_;
   const double speed_;
   FarEnds ends_;
-  std::unique_ptr<ModbusUnit> unit_;
+  std::vector<std::unique_ptr<ModbusUnit>> units_;
   std::vector<std::unique_ptr<Server>> servers_;
   std::vector<ServedInstrument> instruments_;
   std::uint16_t usbip_port_ = 0;

@@ -2,6 +2,7 @@
 // on the bench.
 
 #include "config/device.hpp"
+#include "config/device_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,8 +39,9 @@ constexpr const char* kKvh = "devices/gyro-kvh.json";
 INSTANTIATE_TEST_SUITE_P(
     Modbus, DeviceMistakes,
     testing::Values(
-        Mistake{kEurotherm, R"([{"op": "replace", "path": "/kind", "value": "modbuss"}])",
-                "/kind: found \"modbuss\", expected \"modbus\", \"scpi\", \"hid\" or \"frame\""},
+        Mistake{
+            kEurotherm, R"([{"op": "replace", "path": "/kind", "value": "modbuss"}])",
+            "/kind: found \"modbuss\", expected one of modbus, scpi, hid, frame, modbus_sensor"},
         Mistake{kEurotherm, R"([{"op": "remove", "path": "/kind"}])", "/kind: found nothing"},
         Mistake{kEurotherm, R"([{"op": "remove", "path": "/registers/0"}])",
                 "/registers: has no \"temperature_working_1\""},

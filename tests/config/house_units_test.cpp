@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "config/device_file.hpp"
 #include "tests/config/changed_file.hpp"
 
 namespace fogbench::config {

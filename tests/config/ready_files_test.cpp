@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "config/bench.hpp"
+#include "config/device_file.hpp"
 #include "config/limits.hpp"
 #include "config/model_file.hpp"
 #include "config/procedure.hpp"

@@ -72,8 +72,8 @@ TEST(LoadScenario, MistakesAreNamed) {
       HasSubstr("/hidden/0/tau: found \"9\", expected a number"));
   EXPECT_THAT(
       scenario_mistake(
-          R"({"faults": [{"device": "coil", "at_s": 0, "kind": "timeout", "for_s": 1}]})"),
-      HasSubstr("/faults/0/device: found \"coil\", expected one of thermostat, coil_horizontal"));
+          R"({"faults": [{"device": "a coil", "at_s": 0, "kind": "timeout", "for_s": 1}]})"),
+      HasSubstr("/faults/0/device: found \"a coil\", expected a name of small letters"));
   EXPECT_THAT(scenario_mistake(
                   R"({"faults": [{"device": "gyro", "at_s": 0, "kind": "dead", "for_s": 1}]})"),
               HasSubstr("/faults/0/kind: found \"dead\", expected one of \"timeout\""));

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "config/device_file.hpp"
 #include "daemon/session.hpp"
 #include "drivers/crc.hpp"
 #include "drivers/open_bench.hpp"
@@ -332,6 +333,11 @@ class Comparison {
   std::map<Stage, std::string> known_;
 };
 
+bool is_sensor(const std::string& name) {
+  const json device = json::parse(std::ifstream(kReady / name));
+  return device.value("kind", "").ends_with("_sensor");
+}
+
 /// A bench of which one file, `name` below config/, is changed key by key.
 class EveryKey : public testing::TestWithParam<std::string> {
  protected:
@@ -348,6 +354,9 @@ class EveryKey : public testing::TestWithParam<std::string> {
     if (name.starts_with("devices/gyro")) {
       bench["gyro"]["device"] = device;
       bench["gyro"].erase("frame_rate_hz");
+    }
+    if (is_sensor(name)) {
+      bench["auxiliary"] = {{{"name", "sensor"}, {"device", device}}};
     }
     if (name.starts_with("devices/magnetometer")) {
       bench["magnetometer"].erase("calibration");
@@ -416,7 +425,10 @@ TEST_P(EveryKey, HasAnEffect) {
 INSTANTIATE_TEST_SUITE_P(
     OfReadyFiles, EveryKey,
     testing::Values("benches/simulated.json", "benches/simulated-1khz.json", "benches/factory.json",
-                    "devices/coil-kepco.json", "devices/gyro-crc8.json", "devices/gyro-kvh.json",
+                    "benches/simulated-auxiliary.json", "devices/barometer-modbus.json",
+                    "devices/hygrometer-lines.json", "devices/light-meter-hid.json",
+                    "devices/voltmeter-scpi.json", "devices/coil-kepco.json",
+                    "devices/gyro-crc8.json", "devices/gyro-kvh.json",
                     "devices/magnetometer-hid.json", "devices/thermostat-eurotherm.json",
                     "devices/thermostat-omron.json", "devices/thermostat-watlow.json",
                     "devices/turntable-scpi.json"),
@@ -433,7 +445,7 @@ TEST(EveryKeyTest, NamesEveryReadyFile) {
       if (entry.path().extension() == ".json") ++files;
     }
   }
-  EXPECT_EQ(files, 11U) << "a new one belongs into the list above";
+  EXPECT_EQ(files, 16U) << "a new one belongs into the list above";
 }
 
 }  // namespace

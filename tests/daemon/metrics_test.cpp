@@ -13,6 +13,7 @@
 #include <set>
 #include <sstream>
 
+#include "procedures/channel_values.hpp"
 #include "record/store.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -148,7 +149,7 @@ TEST(Metrics, ANameMayHoldAnything) {
 
 TEST(Metrics, EveryValueOfTheRunLogIsAMetric) {
   const std::string text = metrics_text("simulated", running(), {});
-  for (const record::MonitorColumn& column : record::monitor_columns()) {
+  for (const auto& column : procedures::monitor_channels()) {
     if (column.name == "time_s" || std::isnan(column.value(*running().values))) continue;
     EXPECT_THAT(text, HasSubstr(fmt::format("\nfogbench_{} ", column.name)));
   }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "config/device_file.hpp"
 #include "config/scenario.hpp"
 #include "simulator/simulated_bench.hpp"
 #include "tests/support/source_tree.hpp"

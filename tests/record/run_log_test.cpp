@@ -1,4 +1,5 @@
 #include "record/run_log.hpp"
+#include "procedures/channel_values.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +38,7 @@ procedures::RunHeader header() {
 Point point(double value) {
   Point point;
   double next = value;
-  for (const PointColumn& column : point_columns()) point.*column.value = next += 1.0 / 3.0;
+  for (const auto& column : procedures::point_channels()) point.*column.value = next += 1.0 / 3.0;
   return point;
 }
 
@@ -128,8 +129,34 @@ TEST_F(RunLogTest, KeepsEveryFieldOfAPoint) {
   EXPECT_EQ(read.segment, written.segment);
   EXPECT_EQ(read.count, 60000U);
   EXPECT_EQ(read.dropped, 7U);
-  for (const PointColumn& column : point_columns()) {
+  for (const auto& column : procedures::point_channels()) {
     EXPECT_EQ(read.*column.value, written.*column.value) << column.name;
+  }
+}
+
+TEST_F(RunLogTest, AuxiliaryChannelsGetColumnsOfTheirOwn) {
+  const auto log = open();
+  ASSERT_TRUE(log->begin_run(header(), {}));
+  ASSERT_TRUE(log->point(point(1.0)));
+  procedures::RunHeader with = header();
+  with.auxiliary = {{"pressure_hpa", "air pressure"}, {"supply_v", ""}};
+  ASSERT_TRUE(log->begin_run(with, {}));
+  Point written = point(2.0);
+  written.auxiliary = {{"pressure_hpa", 1013.25}, {"supply_v", kNaN}};
+  ASSERT_TRUE(log->point(written));
+  // A store that has them already takes another run with them, and one without.
+  ASSERT_TRUE(log->begin_run(with, {}));
+  ASSERT_TRUE(log->begin_run(header(), {}));
+  ASSERT_TRUE(log->point(point(3.0)));
+
+  const auto points = reader()->points(2);
+  ASSERT_TRUE(points) << points.error().message;
+  EXPECT_EQ(points->front().point.auxiliary,
+            (procedures::AuxiliaryValues{{"pressure_hpa", 1013.25}}));
+  for (const std::int64_t run : {1, 4}) {
+    const auto others = reader()->points(run);
+    ASSERT_TRUE(others) << others.error().message;
+    EXPECT_TRUE(others->front().point.auxiliary.empty());
   }
 }
 

@@ -1,4 +1,5 @@
 #include "record/store.hpp"
+#include "procedures/channel_values.hpp"
 
 #include <gtest/gtest.h>
 
@@ -141,7 +142,8 @@ TEST(Store, OfAnOlderVersionGetsTheColumnsThatCameLater) {
   ASSERT_TRUE(store) << store.error().message;
   EXPECT_EQ(*(*store)->integer(there), 1);
   EXPECT_EQ(*(*store)->integer("SELECT count(*) FROM channels"),
-            static_cast<std::int64_t>(point_columns().size() + monitor_columns().size()));
+            static_cast<std::int64_t>(procedures::point_channels().size() +
+                                      procedures::monitor_channels().size()));
 }
 
 TEST(Store, DescribesEveryColumnWithItsUnit) {
@@ -150,7 +152,8 @@ TEST(Store, DescribesEveryColumnWithItsUnit) {
   ASSERT_TRUE(store);
   EXPECT_EQ(*(*store)->integer("SELECT count(*) FROM channels WHERE unit = ''"), 0);
   EXPECT_EQ(*(*store)->integer("SELECT count(*) FROM channels"),
-            static_cast<std::int64_t>(point_columns().size() + monitor_columns().size()));
+            static_cast<std::int64_t>(procedures::point_channels().size() +
+                                      procedures::monitor_channels().size()));
   EXPECT_EQ(*(*store)->integer("SELECT count(*) FROM channels WHERE \"table\" = 'points' AND "
                                "name = 'rate_deg_per_h' AND unit = 'deg/h'"),
             1);

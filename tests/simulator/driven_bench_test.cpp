@@ -7,6 +7,7 @@
 #include <string>
 
 #include "config/bench.hpp"
+#include "config/device_file.hpp"
 #include "drivers/open_bench.hpp"
 #include "drivers/safe_state.hpp"
 #include "tests/simulator/test_bench.hpp"

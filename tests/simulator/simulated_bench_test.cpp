@@ -53,7 +53,8 @@ std::string two_hours(std::uint64_t seed, const std::vector<config::FaultSpec>& 
   config::BenchConfig config = test_bench(10.0);
   config.simulation.magnetic.ambient_steps_per_h = 5.0;
   TestFarEnds bench(config, scenario, seed);
-  auto& [thermostat, horizontal, vertical, magnetometer, turntable, gyro] = bench.ends;
+  auto& [thermostat, horizontal, vertical, magnetometer, turntable, gyro, auxiliary] = bench.ends;
+  EXPECT_TRUE(auxiliary.empty());
   std::string log;
   const std::uint16_t target[] = {350};
   const std::uint16_t boost[] = {1};

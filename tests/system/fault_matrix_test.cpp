@@ -22,6 +22,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "config/device_file.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/system/fault_matrix.hpp"
 

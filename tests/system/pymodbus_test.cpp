@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "config/device.hpp"
+#include "config/device_file.hpp"
 #include "drivers/modbus_port.hpp"
 #include "drivers/modbus_thermostat.hpp"
 #include "tests/support/process.hpp"

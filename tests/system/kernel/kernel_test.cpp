@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "config/device.hpp"
+#include "config/device_file.hpp"
 #include "drivers/number_codec.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/source_tree.hpp"
