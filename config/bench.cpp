@@ -107,29 +107,32 @@ bool check(const Place& at, const InstrumentConfig& i) {
   return true;
 }
 
-bool check(const Place& at, const ThermostatConfig& t) {
-  if (!check(at, static_cast<const InstrumentConfig&>(t)) ||
-      !check_scheme(at, t, {"tcp:", "rtu:"}, "a thermostat on tcp: or rtu:")) {
-    return false;
-  }
-  return !t.connection.starts_with("rtu:") || is_unit_of_serial_line(t.device.unit_id) ||
+bool check_unit(const Place& at, const InstrumentConfig& i, std::uint8_t unit_id) {
+  return !i.connection.starts_with("rtu:") || is_unit_of_serial_line(unit_id) ||
          (at / "device")
-             .fail(fmt::format("unit_id is {}; expected 1 to 247 on a serial line",
-                               t.device.unit_id));
+             .fail(fmt::format("unit_id is {}; expected 1 to 247 on a serial line", unit_id));
+}
+
+bool check(const Place& at, const ThermostatConfig& t) {
+  return check(at, static_cast<const InstrumentConfig&>(t)) &&
+         check_scheme(at, t, {"tcp:", "rtu:"}, "a thermostat on tcp: or rtu:") &&
+         check_unit(at, t, t.device.unit_id);
+}
+
+/// A HID instrument is found by the numbers that its description states.
+template <class Device>
+bool check_usb_ids(const Place& at, const InstrumentConfig& i, const Device& device) {
+  const auto connection = parse_connection(i.connection);
+  const auto* const hid = connection ? std::get_if<HidConnection>(&*connection) : nullptr;
+  return hid == nullptr || (hid->vendor == device.vendor_id && hid->product == device.product_id) ||
+         (at / "connection")
+             .wrong(fmt::format("hid:0x{:04x}:0x{:04x}: as {} describes itself", device.vendor_id,
+                                device.product_id, device.name));
 }
 
 bool check(const Place& at, const MagnetometerConfig& m) {
-  if (!check(at, static_cast<const InstrumentConfig&>(m)) ||
-      !check_scheme(at, m, {"hid:"}, "a magnetometer on hid:")) {
-    return false;
-  }
-  const auto connection = parse_connection(m.connection);
-  const auto* const hid = connection ? std::get_if<HidConnection>(&*connection) : nullptr;
-  return hid == nullptr ||
-         (hid->vendor == m.device.vendor_id && hid->product == m.device.product_id) ||
-         (at / "connection")
-             .wrong(fmt::format("hid:0x{:04x}:0x{:04x}: as {} describes itself", m.device.vendor_id,
-                                m.device.product_id, m.device.name));
+  return check(at, static_cast<const InstrumentConfig&>(m)) &&
+         check_scheme(at, m, {"hid:"}, "a magnetometer on hid:") && check_usb_ids(at, m, m.device);
 }
 
 bool check(const Place& at, const CoilConfig& c) {
@@ -186,14 +189,17 @@ bool check(const Place& at, const AuxiliaryConfig& a) {
                         std::string_view expected) {
     return check_scheme(at, a, schemes, expected);
   };
-  if (std::holds_alternative<ModbusSensor>(a.device)) {
-    return with({"tcp:", "rtu:"}, "a Modbus sensor on tcp: or rtu:");
+  if (const auto* const modbus = std::get_if<ModbusSensor>(&a.device)) {
+    return with({"tcp:", "rtu:"}, "a Modbus sensor on tcp: or rtu:") &&
+           check_unit(at, a, modbus->unit_id);
   }
   if (std::holds_alternative<ScpiSensor>(a.device)) {
     return with({"usb:", "tty:"}, "a SCPI sensor on usb: or tty:");
   }
-  return std::holds_alternative<HidSensor>(a.device) ? with({"hid:"}, "a HID sensor on hid:")
-                                                     : with({"tty:"}, "a sensor on tty:");
+  if (const auto* const hid = std::get_if<HidSensor>(&a.device)) {
+    return with({"hid:"}, "a HID sensor on hid:") && check_usb_ids(at, a, *hid);
+  }
+  return with({"tty:"}, "a sensor on tty:");
 }
 
 bool check(const Place& at, const MagneticPlant& m) {

@@ -37,10 +37,14 @@ Result<std::vector<fs::path>> files_of_bench(const fs::path& file) {
   const auto bench = config::read_json_file(file);
   if (!bench) return bench.error();
   std::set<fs::path> devices;
-  for (const auto& instrument : *bench) {
-    if (instrument.is_object() && instrument.contains("device")) {
-      devices.insert(file.parent_path() / instrument["device"].get<std::string>());
-    }
+  const auto take = [&](const auto& instrument) {
+    if (!instrument.is_object() || !instrument.contains("device")) return;
+    devices.insert(file.parent_path() / instrument["device"].template get<std::string>());
+  };
+  for (const auto& part : *bench) {
+    take(part);
+    if (!part.is_array()) continue;  // the auxiliary sensors
+    for (const auto& sensor : part) take(sensor);
   }
   std::vector<fs::path> files{file};
   files.insert(files.end(), devices.begin(), devices.end());

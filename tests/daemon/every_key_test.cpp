@@ -123,6 +123,7 @@ std::string run_of(const Subject& subject, std::vector<config::FaultSpec> faults
     said += fmt::format("\n{} {} {} {} {} {} {} {} {}", p.time_s, p.rate_deg_per_h, p.temperature_c,
                         p.temperature_start_c, p.field_x_ut, p.field_y_ut, p.field_z_ut,
                         p.coil_current_a, p.count);
+    for (const auto& [name, value] : p.auxiliary) said += fmt::format(" {} {}", name, value);
   }
   for (const auto& i : record.instrument_records) {
     said += fmt::format("\n{} {} {} {} {}", i.role, i.identity, i.serial_number, i.calibrated_on,
@@ -145,6 +146,9 @@ std::string troubled_run(const Subject& subject) {
                                         fault("magnetometer", FaultKind::kStuck, 58.0, 5.0),
                                         fault("magnetometer", FaultKind::kTimeout, 66.0, 3.5),
                                         fault("thermostat", FaultKind::kSlowAnswer, 71.0, 6.0)};
+  for (const auto& sensor : subject.setup.bench.auxiliary) {
+    faults.push_back(fault(sensor.name.c_str(), FaultKind::kTimeout, 30.0, 5.5));
+  }
   for (int i = 0; i < 30; ++i) {
     faults.push_back(fault("gyro", FaultKind::kTimeout, 4.0 + 4.0 * i, 0.05));
     faults.push_back(fault("gyro", FaultKind::kStuck, 6.0 + 4.0 * i, 0.04));
@@ -186,6 +190,7 @@ std::string interlocks_of(const Subject& subject) {
           config::Celsius{second < 3950 ? 20.0 + 0.0004 * (second - 3000) : 21.5};
     }
     seen.row.time_s = second;
+    seen.row.auxiliary["supply_v"] = 6.0 - 3.0 * worse;
     seen.commanded.field_ut = {{0.0, 0.0}};
     seen.row.field.field = {config::Microtesla{30.0 * worse}, {}, {}};
     seen.row.current_horizontal_a = 0.2 * worse;
@@ -253,6 +258,49 @@ std::string writable_of(const Subject& subject) {
   return said + (read ? "half a number" : read.error().message);
 }
 
+template <class Device>
+struct InstrumentAt {
+  const Device& device;
+  const std::string& connection;
+};
+template <class Device>
+InstrumentAt(const Device&, const std::string&) -> InstrumentAt<Device>;
+
+/// The unit that a Modbus instrument is asked by, on a line of the test's own.
+template <class Device>
+std::string unit_asked(const Device& device, drivers::Clock& clock) {
+  support::Pty line;
+  const auto port = drivers::open_port(device, "rtu:" + line.path() + ":9600", clock);
+  if (!port) return port.error().message;
+  std::thread asks([&transport = **port] {
+    std::uint16_t word = 0;
+    (void)transport.read_registers(0, {&word, 1});
+  });
+  const std::string unit = line.receive(1);
+  line.unplug();  // an answer that nobody will send is not waited for
+  asks.join();
+  return fmt::format("unit {:02x}", fmt::join(unit, ""));
+}
+
+/// The speed that a line is opened at for what streams on it.
+template <class Device>
+std::string speed_of(const Device& device, drivers::Clock& clock) {
+  const support::Pty line;
+  const auto port = drivers::open_port(device, "tty:" + line.path(), clock);
+  std::byte byte{};
+  if (port) (void)(*port)->read_some({&byte, 1});  // the first use opens it
+  struct termios2 speed {};
+  ioctl(line.fd(), TCGETS2, &speed);
+  return fmt::format("{} baud, ", speed.c_ospeed);
+}
+
+template <class Device>
+std::string speed_or_unit_of(const Device& device, drivers::Clock& clock) {
+  if constexpr (std::is_same_v<Device, config::ModbusSensor>) return unit_asked(device, clock);
+  if constexpr (std::is_same_v<Device, config::LineSensor>) return speed_of(device, clock);
+  return {};
+}
+
 /// Which ports a real bench is looked for at, and at which speed; the port is this machine's own.
 std::string ports_of(const Subject& subject) {
   const BenchConfig& bench = subject.setup.bench;
@@ -273,26 +321,15 @@ std::string ports_of(const Subject& subject) {
         drivers::open_port(*bench.turntable.device, bench.turntable.connection, clock);
     said += bench.turntable.connection + (port ? "" : port.error().message) + "\n";
   }
-  const support::Pty line;
-  const auto gyro = drivers::open_port(bench.gyro.device, "tty:" + line.path(), clock);
-  std::byte byte{};
-  if (gyro) (void)(*gyro)->read_some({&byte, 1});  // the first use opens it
-  struct termios2 speed {};
-  ioctl(line.fd(), TCGETS2, &speed);
-  support::Pty rtu;
-  const auto thermostat =
-      drivers::open_port(bench.thermostat.device, "rtu:" + rtu.path() + ":9600", clock);
-  std::string unit;
-  if (thermostat) {
-    std::thread asks([&transport = **thermostat] {
-      std::uint16_t word = 0;
-      (void)transport.read_registers(0, {&word, 1});
-    });
-    unit = rtu.receive(1);
-    rtu.unplug();  // an answer that nobody will send is not waited for
-    asks.join();
+  for (const config::AuxiliaryConfig& sensor : bench.auxiliary) {
+    said += std::visit(
+        [&](const auto& device) {
+          open(InstrumentAt{device, sensor.connection});
+          return speed_or_unit_of(device, clock);
+        },
+        sensor.device);
   }
-  return said + fmt::format("{} baud, unit {:02x}", speed.c_ospeed, fmt::join(unit, ""));
+  return said + speed_of(bench.gyro.device, clock) + unit_asked(bench.thermostat.device, clock);
 }
 
 /// Keys that are for people: they are in the record as they were written.
@@ -356,7 +393,9 @@ class EveryKey : public testing::TestWithParam<std::string> {
       bench["gyro"].erase("frame_rate_hz");
     }
     if (is_sensor(name)) {
-      bench["auxiliary"] = {{{"name", "sensor"}, {"device", device}}};
+      json sensor{{"name", "sensor"}, {"device", device}};
+      if (name.ends_with("hid.json")) sensor["connection"] = "hid:0x1209:0x0003:NOBODY";
+      bench["auxiliary"] = json::array({sensor});
     }
     if (name.starts_with("devices/magnetometer")) {
       bench["magnetometer"].erase("calibration");

@@ -18,8 +18,8 @@ inline constexpr auto kFurtherKeys = R"({
 
 /// Keys that tell people something; nothing is done with them but to record them.
 inline bool is_for_people(std::string_view pointer) {
-  for (const std::string_view key :
-       {"/name", "/description", "/serial_number", "/calibrated_on", "/calibration_due"}) {
+  for (const std::string_view key : {"/name", "/description", "/meaning", "/serial_number",
+                                     "/calibrated_on", "/calibration_due"}) {
     if (pointer.ends_with(key)) return true;
   }
   return false;

@@ -111,14 +111,35 @@ class SerialTap final : public TapOf<drivers::SerialTransport> {
   }
 };
 
+inline std::unique_ptr<drivers::ModbusTransport> tapped(
+    std::unique_ptr<drivers::ModbusTransport> end, WireTrace& trace) {
+  return std::make_unique<ModbusTap>(std::move(end), trace);
+}
+inline std::unique_ptr<drivers::MessageTransport> tapped(
+    std::unique_ptr<drivers::MessageTransport> end, WireTrace& trace) {
+  return std::make_unique<MessageTap>(std::move(end), trace);
+}
+inline std::unique_ptr<drivers::HidTransport> tapped(std::unique_ptr<drivers::HidTransport> end,
+                                                     WireTrace& trace) {
+  return std::make_unique<HidTap>(std::move(end), trace);
+}
+inline std::unique_ptr<drivers::SerialTransport> tapped(
+    std::unique_ptr<drivers::SerialTransport> end, WireTrace& trace) {
+  return std::make_unique<SerialTap>(std::move(end), trace);
+}
+
 /// All of a bench's, each behind a tap on one trace.
 inline drivers::Transports tapped(drivers::Transports ends, WireTrace& trace) {
-  return {.thermostat = std::make_unique<ModbusTap>(std::move(ends.thermostat), trace),
-          .coil_horizontal = std::make_unique<MessageTap>(std::move(ends.coil_horizontal), trace),
-          .coil_vertical = std::make_unique<MessageTap>(std::move(ends.coil_vertical), trace),
-          .magnetometer = std::make_unique<HidTap>(std::move(ends.magnetometer), trace),
-          .turntable = std::make_unique<MessageTap>(std::move(ends.turntable), trace),
-          .gyro = std::make_unique<SerialTap>(std::move(ends.gyro), trace)};
+  drivers::Transports out{.thermostat = tapped(std::move(ends.thermostat), trace),
+                          .coil_horizontal = tapped(std::move(ends.coil_horizontal), trace),
+                          .coil_vertical = tapped(std::move(ends.coil_vertical), trace),
+                          .magnetometer = tapped(std::move(ends.magnetometer), trace),
+                          .turntable = tapped(std::move(ends.turntable), trace),
+                          .gyro = tapped(std::move(ends.gyro), trace)};
+  for (drivers::SensorTransport& way : ends.auxiliary) {
+    std::visit([&](auto& end) { out.auxiliary.emplace_back(tapped(std::move(end), trace)); }, way);
+  }
+  return out;
 }
 
 }  // namespace fogbench::support
