@@ -145,6 +145,7 @@ constexpr Entry kTexts[] = {
     {Text::kAborted, {"aborted", "прерван оператором"}},
     {Text::kFailed, {"failed", "прерван отказом"}},
     {Text::kInterrupted, {"interrupted", "оборвался"}},
+    {Text::kUnderWay, {"under way", "продолжается"}},
     {Text::kTakenUp, {"the next run goes on from there", "продолжен следующим прогоном"}},
     {Text::kInstruments, {"Instruments", "Средства измерений"}},
     {Text::kInstrument, {"instrument", "прибор"}},
@@ -292,7 +293,7 @@ std::string_view outcome_name(std::string_view outcome, Language language) {
   if (outcome == "completed") return text(Text::kCompleted, language);
   if (outcome == "aborted") return text(Text::kAborted, language);
   if (outcome == "failed") return text(Text::kFailed, language);
-  return text(Text::kInterrupted, language);
+  return text(outcome == "under way" ? Text::kUnderWay : Text::kInterrupted, language);
 }
 
 std::string localised(std::string number, Language language) {

@@ -95,6 +95,7 @@ enum class Text {
   kAborted,
   kFailed,
   kInterrupted,
+  kUnderWay,
   kTakenUp,
   kInstruments,
   kInstrument,

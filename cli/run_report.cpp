@@ -203,7 +203,7 @@ std::string heading(const record::StoredRun& run) {
     line("reason", run.end->reason);
     line("safe state", run.end->safe_state_reached ? "reached, read back" : "NOT REACHED");
   } else {
-    line("ended", "never: interrupted, or still under way");
+    line("ended", run.under_way ? "not yet" : "never");
   }
   if (header.continues)
     line("takes up", fmt::format("run {}; the results are of both", header.continues->run));

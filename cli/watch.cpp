@@ -65,12 +65,13 @@ Result<ExitStatus> run_watch(const WatchOptions& options) {
     }
     page.clear();
     const auto last = status->find("last_run");
-    if (!any_run || last == status->end() || !last->is_object()) {
-      if (!options.json) fmt::print("{}", status_text(*status));
-      return ExitStatus::kDone;
+    const bool ended = last != status->end() && last->is_object();
+    const Status outcome = ended ? outcome_of(*last) : Status{};
+    if (!any_run && !options.json) fmt::print("{}", status_text(*status));
+    if (!outcome) return outcome.error();
+    if (any_run && ended && !options.json) {
+      fmt::print("{}\n{}", ended_text(*last), queue_text(*status));
     }
-    if (const Status outcome = outcome_of(*last); !outcome) return outcome.error();
-    if (!options.json) fmt::print("{}\n{}", ended_text(*last), queue_text(*status));
     return ExitStatus::kDone;
   }
 }

@@ -119,7 +119,7 @@ Result<std::vector<T>> collect(Statement& statement, Read read) {
 }  // namespace
 
 std::string StoredRun::outcome() const {
-  if (!end) return "interrupted";
+  if (!end) return under_way ? "under way" : "interrupted";
   return std::string(name_of(end->outcome));
 }
 
@@ -141,10 +141,17 @@ std::string RunLogReader::select_runs() const {
   return fmt::format(kSelectRuns, has_continuations_ ? kContinuation : kNoContinuation);
 }
 
+StoredRun RunLogReader::read(const Statement& row) const {
+  const bool written = WritingLock::held(path_, row.integer(0));  // before its record: it may end
+  StoredRun stored = read_run(row);
+  stored.under_way = !stored.end && written;
+  return stored;
+}
+
 Result<std::vector<StoredRun>> RunLogReader::runs() {
   auto select = database_->prepare(select_runs() + " ORDER BY run");
   if (!select) return select.error();
-  return collect<StoredRun>(*select, [&] { return read_run(*select); });
+  return collect<StoredRun>(*select, [&] { return read(*select); });
 }
 
 Result<StoredRun> RunLogReader::run(std::int64_t run) {
@@ -153,7 +160,7 @@ Result<StoredRun> RunLogReader::run(std::int64_t run) {
   select->bind(run);
   const auto row = select->step();
   if (!row) return row.error();
-  if (*row) return read_run(*select);
+  if (*row) return read(*select);
   const auto last = database_->integer("SELECT coalesce(max(run), 0) FROM runs");
   if (!last) return last.error();
   return Error{ErrorCode::kBadInput,

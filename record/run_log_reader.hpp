@@ -17,17 +17,17 @@ namespace fogbench::record {
 
 struct StoredRun {
   std::int64_t run = 0;
-  procedures::RunHeader header;  ///< of a continuation: run and first step
-  std::int64_t taken_up_by = 0;  ///< 0: by none
-  /// Empty: interrupted, or still under way in another program.
-  std::optional<procedures::RunEnd> end;
-  std::string raw_sha256;  ///< over the chunks' hashes; empty when interrupted
+  procedures::RunHeader header;           ///< of a continuation: run and first step
+  std::int64_t taken_up_by = 0;           ///< 0: by none
+  std::optional<procedures::RunEnd> end;  ///< empty: under way, or interrupted
+  bool under_way = false;                 ///< somebody was writing it when it was read
+  std::string raw_sha256;                 ///< over the chunks' hashes; empty when interrupted
   std::int64_t points = 0;
   std::int64_t points_void = 0;
   std::int64_t frames_stored = 0;
 
   bool completed() const { return end && end->outcome == procedures::RunOutcome::kCompleted; }
-  /// "completed", "aborted", "failed" or "interrupted".
+  /// "completed", "aborted", "failed", "interrupted" or "under way".
   std::string outcome() const;
 };
 
@@ -82,6 +82,7 @@ class RunLogReader {
 
  private:
   RunLogReader(std::unique_ptr<Database> database, std::filesystem::path path);
+  StoredRun read(const Statement& row) const;
   Result<std::vector<std::string>> number_columns(const std::string& table);
   std::string select_runs() const;
   std::unique_ptr<Database> database_;

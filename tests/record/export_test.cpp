@@ -56,6 +56,27 @@ TEST_F(ExportTest, NumbersReadBackTheSameAndMissingOnesAreEmpty) {
   EXPECT_NE(text.find(",0,,0,0,0,0,0,0\n"), std::string::npos);  // field_set_ut is missing
 }
 
+TEST_F(ExportTest, AuxiliaryChannelsStandBehindTheBenchsOwn) {
+  procedures::RunHeader header;
+  header.auxiliary = {{"pressure_hpa", "air pressure"}};
+  ASSERT_TRUE(log_->end_run({}));
+  ASSERT_TRUE(log_->begin_run(header, {}));
+  for (const double pressure : {1013.5, std::numeric_limits<double>::quiet_NaN()}) {
+    procedures::Point point;
+    point.auxiliary["pressure_hpa"] = pressure;
+    ASSERT_TRUE(log_->point(point));
+  }
+  auto reader = RunLogReader::open(folder_ / "store.db");
+  auto out = config::OutputFile::open(folder_ / "out.csv");
+  ASSERT_TRUE(reader && out);
+  ASSERT_TRUE(write_points(*valid_points(**reader, 2, true), **out));
+  ASSERT_TRUE((*out)->commit());
+  const std::string text = support::read_text(folder_ / "out.csv");
+  EXPECT_NE(text.find(",frames,frames_dropped,pressure_hpa\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(",0,0,1013.5\n"), std::string::npos) << text;
+  EXPECT_TRUE(text.ends_with(",0,0,\n")) << text;
+}
+
 TEST_F(ExportTest, VoidPointsAreLeftOut) {
   point("first", 1);
   ASSERT_TRUE(log_->void_block(1, 0.0, "paused"));
@@ -72,9 +93,19 @@ TEST_F(ExportTest, AnInterruptedRunIsTakenOnlyOnRequest) {
   const auto refused = valid_points(**reader, 1, false);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::kBadInput);
-  EXPECT_NE(refused.error().message.find("interrupted"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("under way"), std::string::npos);
   EXPECT_TRUE(valid_points(**reader, 1, true));
+  log_.reset();
+  const auto still = valid_points(**reader, 1, false);
+  ASSERT_FALSE(still);
+  EXPECT_NE(still.error().message.find("interrupted"), std::string::npos);
+}
+
+TEST_F(ExportTest, ACompletedRunIsTaken) {
+  point("a");
   ASSERT_TRUE(log_->end_run({}));
+  auto reader = RunLogReader::open(folder_ / "store.db");
+  ASSERT_TRUE(reader);
   EXPECT_TRUE(valid_points(**reader, 1, false));
 }
 

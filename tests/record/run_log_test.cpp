@@ -193,6 +193,15 @@ TEST_F(RunLogTest, ARunWithoutAnEndIsInterrupted) {
   EXPECT_FALSE(runs->front().completed());
 }
 
+TEST_F(RunLogTest, ARunThatSomebodyWritesIsUnderWay) {
+  const auto log = open();
+  ASSERT_TRUE(log->begin_run(header(), {}));
+  EXPECT_EQ(reader()->runs()->front().outcome(), "under way");
+  EXPECT_EQ(reader()->run(1)->outcome(), "under way");
+  ASSERT_TRUE(log->end_run({}));
+  EXPECT_EQ(reader()->run(1)->outcome(), "completed");
+}
+
 TEST_F(RunLogTest, RunsAreNumberedOneAfterTheOther) {
   ASSERT_TRUE(open()->begin_run(header(), {}));
   const auto second = open()->begin_run(header(), {});
