@@ -1,5 +1,4 @@
-// Every further column of numbers as a cause, in the generic forms of
-// model/effects/sensitivity.hpp.
+#include "model/diagnose/sensitivities.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "model/diagnose/library_builder.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/effects/sensitivity.hpp"
 #include "model/table/measurement_columns.hpp"
 #include "model/table/median.hpp"
