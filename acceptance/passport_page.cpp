@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acceptance/passport.css.hpp"
 #include "acceptance/passport_writer.hpp"
 #include "model/report/report_page.hpp"
 #include "model/report/svg_plot.hpp"
@@ -16,31 +17,6 @@ using model::Conformity;
 using model::escaped;
 
 namespace {
-
-constexpr auto kPassportStyle = R"(
-@page { size: A4; margin: 14mm 12mm; }
-.dots.first { stroke: var(--point); } .joint.first.line { stroke: var(--point); }
-.marks.second { fill: #fff; fill-opacity: 1; stroke: var(--fail); }
-.joint.second.line { stroke: var(--fail); stroke-dasharray: 6 3; }
-.marks.line { display: none; }
-.verdict h2 { margin: .4rem 0; }
-.verdict.open { border-color: var(--soft); }
-td.pass { color: var(--point); } td.fail { color: var(--fail); font-weight: 600; }
-td.hash { font: 11px/1.35 "DejaVu Sans Mono", monospace; white-space: normal; word-break: break-all; }
-td.free { white-space: normal; overflow-wrap: anywhere; }
-td.text:first-child, th { white-space: normal; }
-table.full { width: 100%; } table.origin td { text-align: left; }
-table.signatures { width: 100%; margin-top: .5rem; break-inside: avoid; }
-table.signatures td { border: 0; padding: 1.6rem 1.2rem 0 0; vertical-align: bottom; width: 25%; }
-table.signatures div { border-bottom: 1px solid var(--ink); }
-table.signatures tr.under td { color: var(--soft); font-size: .8rem; padding-top: .1rem;
-                               text-align: left; }
-@media print {
-  html { font-size: 11px; } h2 { margin-top: 1.4rem; } th, td { padding: .2rem .6rem .2rem 0; }
-  .wide { overflow: visible; } .plots { grid-template-columns: 1fr 1fr; } section { break-inside: auto; }
-  section.together { break-inside: avoid; }
-}
-)";
 
 const char* kind_of(Conformity verdict) {
   return verdict == Conformity::kPass ? "pass" : verdict == Conformity::kFail ? "fail" : "";

@@ -62,8 +62,10 @@ Violations forbidden_includes(const Tree& tree) {
     if (!file.is_cpp()) continue;
     for (const std::string& include : quoted_includes(file)) {
       const std::string to = include.substr(0, include.find('/'));
-      // What the build makes stands there as its template.
-      if (find(tree, include) == nullptr && find(tree, include + ".in") == nullptr) {
+      // What the build makes stands there as its template, or as the text that it holds.
+      const std::string text = include.substr(0, include.rfind('.'));
+      if (find(tree, include) == nullptr && find(tree, include + ".in") == nullptr &&
+          find(tree, text) == nullptr) {
         found.push_back(fmt::format("{} includes \"{}\": no such file from the repository's root",
                                     file.path, include));
       } else if (!may_see(file.folder(), to)) {
