@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <regex>
 #include <sstream>
 
@@ -132,6 +133,27 @@ Violations homeless_sources(const Tree& tree) {
     if (file.is_cpp() && !is_room(file.folder()) && file.folder() != "tests") {
       found.push_back(fmt::format("{}: its folder is not a room of the house", file.path));
     }
+  }
+  return found;
+}
+
+Violations sources_without_header(const Tree& tree) {
+  const SourceFile* commands = find(tree, "cli/command.hpp");
+  Violations found;
+  for (const SourceFile& file : tree) {
+    if (!file.path.ends_with(".cpp") || !is_in_room(file) || kLooseRooms.contains(file.folder())) {
+      continue;
+    }
+    const std::string header = file.path.substr(0, file.path.size() - 3) + "hpp";
+    const std::string name = std::filesystem::path(file.path).stem();
+    const bool is_family = file.path.starts_with("model/effects/catalogue/") ||
+                           file.path.starts_with("simulator/effects/");
+    const bool is_command = file.folder() == "cli" && commands != nullptr &&
+                            commands->code.find("void add_" + name + "(") != std::string::npos;
+    if (name == "main" || is_family || is_command || find(tree, header) != nullptr) continue;
+    found.push_back(fmt::format(
+        "{} has no {} beside it: join it with what it was cut from, or say there what it is",
+        file.path, header));
   }
   return found;
 }

@@ -94,6 +94,25 @@ TEST(HomelessSources, FindsAFolderThatTheTableDoesNotKnow) {
   EXPECT_THAT(homeless_sources(tree), ElementsAre(HasSubstr("misc/helper.cpp")));
 }
 
+TEST(SourcesWithoutHeader, FindsAPartOfAnotherFile) {
+  const Tree tree{file("model/fit/fit.hpp", ""),
+                  file("model/fit/fit.cpp", ""),
+                  file("model/fit/fit_results.cpp", ""),
+                  file("cli/command.hpp", "void add_fit();"),
+                  file("cli/fit.cpp", ""),
+                  file("cli/fit_text.cpp", "")};
+  EXPECT_THAT(sources_without_header(tree),
+              ElementsAre(HasSubstr("model/fit/fit_results.cpp has no model/fit/fit_results.hpp"),
+                          HasSubstr("cli/fit_text.cpp")));
+}
+
+TEST(SourcesWithoutHeader, AcceptsProgramsFamiliesOfEffectsAndTests) {
+  EXPECT_THAT(sources_without_header(
+                  {file("daemon/main.cpp", ""), file("model/effects/catalogue/bias.cpp", ""),
+                   file("simulator/effects/drift.cpp", ""), file("tests/cli/a_test.cpp", "")}),
+              IsEmpty());
+}
+
 TEST(MachineTimeOrChance, FindsTheMachinesClockAndUnseededChance) {
   const Tree tree{
       file("daemon/a.cpp", "\nauto t = std::chrono::system_clock::now();\n"),

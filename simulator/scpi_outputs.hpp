@@ -1,0 +1,33 @@
+#pragma once
+// What the bench's two kinds of SCPI instruments drive: a coil pair's current, the turntable.
+
+#include <cstdint>
+#include <memory>
+
+#include "config/device.hpp"
+#include "simulator/magnetic_physics.hpp"
+#include "simulator/plant.hpp"
+
+namespace fogbench::simulator {
+
+/// What a SCPI instrument drives.
+class ScpiOutput {
+ public:
+  virtual ~ScpiOutput() = default;
+  /// Precondition: within the instrument's range.
+  virtual void set(Plant& plant, double value) = 0;
+  virtual double setpoint() const = 0;
+  virtual double measure(const Plant& plant) = 0;
+  virtual void switch_output(Plant& plant, bool on) = 0;
+  /// The circuit that it drives is open, or whole again.
+  virtual void open_circuit(Plant& /*plant*/, bool /*open*/) {}
+};
+
+/// One pair's bipolar current source: 15 bits and a sign; with the output off it programs zero.
+std::unique_ptr<ScpiOutput> make_supply_output(const config::ScpiDevice& device,
+                                               MagneticPhysics::Pair pair, double bits,
+                                               std::uint64_t seed);
+/// The turntable's motor.
+std::unique_ptr<ScpiOutput> make_turntable_output();
+
+}  // namespace fogbench::simulator
