@@ -11,7 +11,7 @@
 #include "config/paths.hpp"
 #include "model/compare/contrast.hpp"
 #include "model/compare/repeatability.hpp"
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/table/table.hpp"
 #include "record/export.hpp"
 

@@ -3,7 +3,6 @@
 // the numbers. As JSON (without a language) and as one page that prints; acceptance/passport.md
 // describes both.
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -38,13 +37,5 @@ Result<Passport> make_passport(Acceptance acceptance, config::LimitsConfig limit
 std::string remark_text(const Remark& remark, Language language);
 /// `coverage_factor` of the printed uncertainty.
 std::string change_text(const model::RunChange& change, double coverage_factor, Language language);
-
-/// The verdict alone.
-nlohmann::ordered_json verdict_json(const Passport& passport);
-nlohmann::ordered_json passport_json(const Passport& passport);
-std::string passport_html(const Passport& passport, Language language);
-
-/// The plots of the page, with their legend.
-std::string passport_plots(const Acceptance& acceptance, Language language);
 
 }  // namespace fogbench::acceptance

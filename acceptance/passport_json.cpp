@@ -1,9 +1,9 @@
+#include "acceptance/passport_json.hpp"
+
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 
-#include "acceptance/passport.hpp"
-#include "record/chunk_codec.hpp"
+#include "record/file_hash.hpp"
 #include "record/store.hpp"
 
 namespace fogbench::acceptance {
@@ -28,10 +28,6 @@ ordered_json list_of(const std::vector<T>& rows, Write write) {
   ordered_json list = ordered_json::array();
   for (const T& row : rows) list.push_back(write(row));
   return list;
-}
-
-std::string hash_of(const std::string& content) {
-  return record::hexadecimal(record::sha256_of(std::as_bytes(std::span(content))));
 }
 
 ordered_json judgement_json(const model::Judgement& row) {
@@ -151,12 +147,13 @@ ordered_json run_json(const RunProvenance& made) {
       {"operator", nullable(header.operator_name)},
       {"software_version", header.software_version},
       {"procedure", header.procedure},
-      {"procedure_sha256", hash_of(header.procedure_json)},
+      {"procedure_sha256", record::text_sha256(header.procedure_json)},
       {"bench", header.bench},
-      {"bench_sha256", hash_of(header.bench_json)},
+      {"bench_sha256", record::text_sha256(header.bench_json)},
       {"simulated", !header.scenario_json.empty()},
-      {"scenario_sha256",
-       header.scenario_json.empty() ? ordered_json() : ordered_json(hash_of(header.scenario_json))},
+      {"scenario_sha256", header.scenario_json.empty()
+                              ? ordered_json()
+                              : ordered_json(record::text_sha256(header.scenario_json))},
       {"seed", nullable(header.seed)},
       {"raw_sha256", made.raw_sha256},
       {"raw_data_intact", made.raw_data_intact},

@@ -1,4 +1,4 @@
-// The page of a passport. One file, nothing from outside; prints on A4.
+#include "acceptance/passport_page.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,40 +7,18 @@
 #include <cmath>
 #include <utility>
 
+#include "acceptance/passport.css.hpp"
+#include "acceptance/passport_plots.hpp"
 #include "acceptance/passport_writer.hpp"
 #include "model/report/report_page.hpp"
 #include "model/report/svg_plot.hpp"
+#include "record/file_hash.hpp"
 
 namespace fogbench::acceptance {
 using model::Conformity;
 using model::escaped;
 
 namespace {
-
-constexpr auto kPassportStyle = R"(
-@page { size: A4; margin: 14mm 12mm; }
-.dots.first { stroke: var(--point); } .joint.first.line { stroke: var(--point); }
-.marks.second { fill: #fff; fill-opacity: 1; stroke: var(--fail); }
-.joint.second.line { stroke: var(--fail); stroke-dasharray: 6 3; }
-.marks.line { display: none; }
-.verdict h2 { margin: .4rem 0; }
-.verdict.open { border-color: var(--soft); }
-td.pass { color: var(--point); } td.fail { color: var(--fail); font-weight: 600; }
-td.hash { font: 11px/1.35 "DejaVu Sans Mono", monospace; white-space: normal; word-break: break-all; }
-td.free { white-space: normal; overflow-wrap: anywhere; }
-td.text:first-child, th { white-space: normal; }
-table.full { width: 100%; } table.origin td { text-align: left; }
-table.signatures { width: 100%; margin-top: .5rem; break-inside: avoid; }
-table.signatures td { border: 0; padding: 1.6rem 1.2rem 0 0; vertical-align: bottom; width: 25%; }
-table.signatures div { border-bottom: 1px solid var(--ink); }
-table.signatures tr.under td { color: var(--soft); font-size: .8rem; padding-top: .1rem;
-                               text-align: left; }
-@media print {
-  html { font-size: 11px; } h2 { margin-top: 1.4rem; } th, td { padding: .2rem .6rem .2rem 0; }
-  .wide { overflow: visible; } .plots { grid-template-columns: 1fr 1fr; } section { break-inside: auto; }
-  section.together { break-inside: avoid; }
-}
-)";
 
 const char* kind_of(Conformity verdict) {
   return verdict == Conformity::kPass ? "pass" : verdict == Conformity::kFail ? "fail" : "";
@@ -65,7 +43,10 @@ class Page : public PassportWriter {
     magnetic();
     plots();
     noise();
-    return out_ + passport_origin(passport_, language_) + model::page_end();
+    origin();
+    instruments();
+    signatures();
+    return out_ + model::page_end();
   }
 
  private:
@@ -270,6 +251,82 @@ class Page : public PassportWriter {
       term(say(Text::kQuantisation), "deg", n.quantisation_deg, e.quantisation_deg);
       end_table();
     }
+    end_section();
+  }
+
+  void origin() {
+    section(Text::kProvenance, true);
+    out_ += "<div class=\"wide\"><table class=\"full origin\">\n";
+    for (const RunProvenance& made : acceptance_.runs) origin_of(made);
+    end_table();
+    end_section();
+  }
+
+  void fact(Text what, const std::string& value, const char* kind = "free") {
+    const std::string shown = value.empty() ? say(Text::kNotRecorded) : escaped(value);
+    out_ += fmt::format("<tr><td>{}</td><td class=\"{}\">{}</td></tr>\n", say(what), kind, shown);
+  }
+
+  void origin_of(const RunProvenance& made) {
+    const record::StoredRun& run = made.run;
+    const procedures::RunHeader& header = run.header;
+    fact(Text::kRun, std::to_string(run.run));
+    fact(Text::kGyro, header.gyro_serial_number);
+    fact(Text::kOperator, header.operator_name);
+    fact(Text::kProcedure, header.procedure);
+    fact(Text::kBench, header.bench);
+    if (header.seed) fact(Text::kSeed, std::to_string(*header.seed));
+    fact(Text::kStarted, date(header.started_at));
+    fact(Text::kEnded, run.end ? date(run.end->ended_at) : "");
+    const std::string outcome(outcome_name(run.outcome(), language_));
+    fact(Text::kOutcome,
+         made.taken_up ? fmt::format("{}; {}", outcome, say(Text::kTakenUp)) : outcome);
+    fact(Text::kSoftware, "fogbench " + header.software_version);
+    fact(Text::kConfiguration,
+         record::text_sha256(header.procedure_json + header.bench_json + header.scenario_json),
+         "hash");
+    fact(Text::kRawData,
+         fmt::format("{} ({})", made.raw_sha256,
+                     say(made.raw_data_intact ? Text::kIntact : Text::kChanged)),
+         "hash");
+    fact(Text::kPoints,
+         run.points_void == 0
+             ? std::to_string(run.points)
+             : fmt::format("{}, {} {}", run.points, say(Text::kPointsVoid), run.points_void));
+    fact(Text::kFrames, run.end
+                            ? fmt::format("{}, {} {}", run.frames_stored, say(Text::kFramesMissing),
+                                          run.end->stream.frames_missing)
+                            : std::to_string(run.frames_stored));
+  }
+
+  void instruments() {
+    section(Text::kInstruments, true);
+    table({say(Text::kRun), say(Text::kInstrument), say(Text::kIdentity), say(Text::kSerialNumber),
+           say(Text::kCalibrated), say(Text::kDue)},
+          6);
+    for (const RunProvenance& made : acceptance_.runs) {
+      for (const procedures::InstrumentRecord& i : made.instruments) {
+        const auto stated = [](const std::string& d) { return d.empty() ? "&ndash;" : escaped(d); };
+        row({std::to_string(made.run.run), std::string(role_name(i.role, language_)),
+             escaped(i.identity), escaped(i.serial_number), stated(i.calibrated_on),
+             stated(i.calibration_due)});
+      }
+    }
+    end_table();
+    end_section();
+  }
+
+  void signatures() {
+    section(Text::kSignatures, true);
+    out_ += "<table class=\"signatures\">\n";
+    for (const Text who : {Text::kTestedBy, Text::kCheckedBy, Text::kCustomer}) {
+      out_ += fmt::format(
+          "<tr><td>{}</td><td><div></div></td><td><div></div></td><td><div></div></td></tr>\n"
+          "<tr class=\"under\"><td></td><td>{}</td><td>{}</td>"
+          "<td>{}</td></tr>\n",
+          say(who), say(Text::kName), say(Text::kSignature), say(Text::kDate));
+    }
+    out_ += "</table>\n";
     end_section();
   }
 };

@@ -1,4 +1,4 @@
-// The plots of a passport's page: deviation by temperature, and by the field along each axis.
+#include "acceptance/passport_plots.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 
-#include "acceptance/passport.hpp"
 #include "model/report/svg_plot.hpp"
 
 namespace fogbench::acceptance {

@@ -1,6 +1,6 @@
 #pragma once
 // What the sections of a passport's page are written with: words, numbers and tables in the page's
-// language. For the passport_*.cpp files only.
+// language.
 
 #include <fmt/format.h>
 
@@ -60,8 +60,5 @@ class PassportWriter {
  private:
   std::size_t text_columns_ = 0;
 };
-
-/// The last sections: where the data come from, the instruments, lines for signatures.
-std::string passport_origin(const Passport& passport, Language language);
 
 }  // namespace fogbench::acceptance

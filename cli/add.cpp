@@ -11,7 +11,7 @@
 #include "config/model_file.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 
 namespace fogbench::cli {
 namespace {

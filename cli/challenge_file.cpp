@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <nlohmann/json.hpp>
+#include <span>
 
-#include "cli/seal.hpp"
 #include "config/describe_scenario.hpp"
+#include "record/chunk_codec.hpp"
 #include "record/file_hash.hpp"
 
 namespace fogbench::cli {
@@ -26,22 +28,34 @@ void describe(Visitor& v, ChallengeFile& f) {
   v.required("procedure", f.procedure, "That measured it.");
   v.optional("set", f.set, "Parameters of the procedure.");
   v.required("data_sha256", f.data_sha256, "Of measurements.csv.");
-  v.required("seal", f.seal, "What is hidden.");
+  v.optional("hidden", f.hidden, "What is hidden, in hexadecimal digits.");
+  v.required("seal", f.seal, "SHA-256 of the rest.");
 }
 
 namespace {
 
-/// What the seal is bound to beside the data.
-std::string beside(ChallengeFile file) {
+std::string seal_of(ChallengeFile file) {
   file.seal.clear();
-  return config::Codec<ChallengeFile>::write(file).dump();
+  return record::text_sha256(config::Codec<ChallengeFile>::write(file).dump());
+}
+
+/// The text that record::hexadecimal() was given.
+std::string text_of_digits(std::string_view digits) {
+  std::string text;
+  for (std::size_t at = 0; at + 1 < digits.size(); at += 2) {
+    unsigned char byte = 0;
+    std::from_chars(digits.data() + at, digits.data() + at + 2, byte, 16);
+    text += static_cast<char>(byte);
+  }
+  return text;
 }
 
 }  // namespace
 
 std::string sealed_text(ChallengeFile file, const ChallengeSecret& secret) {
   const std::string text = config::Codec<ChallengeSecret>::write(secret).dump();
-  file.seal = seal(text, file.data_sha256, beside(file));
+  file.hidden = record::hexadecimal(std::as_bytes(std::span(text)));
+  file.seal = seal_of(file);
   return config::pretty_json(config::Codec<ChallengeFile>::write(file));
 }
 
@@ -49,6 +63,12 @@ Result<ChallengeSecret> open_challenge(const std::filesystem::path& folder) {
   const std::filesystem::path name = folder / kSealedFile;
   const auto file = config::read_config<ChallengeFile>(name);
   if (!file) return file.error();
+  if (file->hidden.empty()) {
+    return Error{ErrorCode::kBadInput,
+                 fmt::format("{}: has no /hidden: it was sealed by an older version, whose seals "
+                             "this one does not open",
+                             name.string())};
+  }
   const std::filesystem::path data = folder / kMeasurementsFile;
   const auto sha256 = record::file_sha256(data);
   if (!sha256) return sha256.error();
@@ -59,12 +79,12 @@ Result<ChallengeSecret> open_challenge(const std::filesystem::path& folder) {
                     "data that were sealed only",
                     data.string(), *sha256, config::one_line(file->data_sha256), name.string())};
   }
-  const auto opened = open_seal(file->seal, *sha256, beside(*file));
-  if (!opened) {
+  if (file->seal != seal_of(*file)) {
     return Error{ErrorCode::kBadInput,
-                 fmt::format("{}: /seal: {}", name.string(), opened.error().message)};
+                 fmt::format("{}: /seal: the seal is broken: the file is not as it was made",
+                             name.string())};
   }
-  const auto tree = config::parse_json(*opened, name.string());
+  const auto tree = config::parse_json(text_of_digits(file->hidden), name.string());
   if (!tree) return tree.error();
   config::ReadState state{name, std::nullopt};
   ChallengeSecret secret;
@@ -74,8 +94,8 @@ Result<ChallengeSecret> open_challenge(const std::filesystem::path& folder) {
   if (secret.visible_deg_per_h.size() != secret.scenario.hidden.size()) {
     return Error{
         ErrorCode::kBadInput,
-        fmt::format("{}: /seal: {} sizes of {} hidden effects, expected one of each", name.string(),
-                    secret.visible_deg_per_h.size(), secret.scenario.hidden.size())};
+        fmt::format("{}: /hidden: {} sizes of {} hidden effects, expected one of each",
+                    name.string(), secret.visible_deg_per_h.size(), secret.scenario.hidden.size())};
   }
   return secret;
 }

@@ -1,5 +1,11 @@
 #pragma once
-// sealed.json of a challenge: what everybody may read, and the seal over what is hidden.
+// sealed.json of a challenge: what everybody may read, and what is hidden.
+//
+//   hidden   the secret as JSON, in hexadecimal digits
+//   seal     SHA-256 of everything else in the file
+//
+// An honest person does not see the answer by accident (cat, strings, grep), and changed data or a
+// changed file are noticed. It stops nobody who wants to know.
 
 #include <filesystem>
 #include <map>
@@ -15,7 +21,7 @@ inline constexpr auto kMeasurementsFile = "measurements.csv";
 inline constexpr auto kModelFile = "model.json";
 inline constexpr auto kSealedFile = "sealed.json";
 
-/// What is under the seal.
+/// What the challenge hides.
 struct ChallengeSecret {
   std::string seed;  ///< as text: JSON numbers do not hold 64 bits
   config::ScenarioConfig scenario;
@@ -24,7 +30,6 @@ struct ChallengeSecret {
   double noise_deg_per_h = 0.0;  ///< RMS that model.json leaves when nothing is hidden
 };
 
-/// What everybody may read. Nothing here depends on what is hidden, the hash of the data apart.
 struct ChallengeFile {
   std::string says;
   std::string software_version;
@@ -32,14 +37,16 @@ struct ChallengeFile {
   std::string procedure;
   std::map<std::string, std::vector<double>> set;  ///< its parameters, where not as they stand
   std::string data_sha256;
-  std::string seal;  ///< of the secret, made by seal_challenge
+  std::string hidden;
+  std::string seal;
 };
 
-/// The text of sealed.json: `file`, whose `seal` is not looked at, sealed over `secret`.
+/// The text of sealed.json: `file` with `hidden` and `seal` made for `secret`. The same arguments
+/// give the same text.
 std::string sealed_text(ChallengeFile file, const ChallengeSecret& secret);
 
 /// Opens the seal in `folder`. kBadInput, one line: missing or damaged files, data that are not
-/// those which were sealed, a broken seal.
+/// those which were sealed, a broken seal, a seal of an older version.
 Result<ChallengeSecret> open_challenge(const std::filesystem::path& folder);
 
 }  // namespace fogbench::cli

@@ -25,7 +25,7 @@
 #include "model/diagnose/diagnose.hpp"
 #include "model/diagnose/verdict_text.hpp"
 #include "model/diagnose/working_table.hpp"
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/report/diagnosis_report.hpp"
 
 namespace fogbench::cli {

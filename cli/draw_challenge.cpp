@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 #include "simulator/random.hpp"
 
 namespace fogbench::cli {

@@ -7,7 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/output.hpp"
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 
 namespace fogbench::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/result.hpp"
-#include "model/table/table.hpp"
+#include "model/table/read_csv.hpp"
 
 namespace fogbench::cli {
 
@@ -46,7 +46,7 @@ std::string command_with_adequate(const DataOptions& options, const std::string&
 
 /// The tables one after the other. With several, the run of each row is "DATA/run", so that test 1
 /// of two records stays two runs.
-/// Of a longer CSV file neighbouring rows are averaged (model/table/table.hpp, read_csv).
+/// Of a longer CSV file neighbouring rows are averaged (model/table/read_csv.hpp).
 /// Errors: kBadInput (no such file or run, not CSV, no row matches the segment), kStore.
 Result<model::Table> load_table(const DataOptions& options,
                                 std::size_t most_rows = model::kEveryRow);

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "acceptance/passport_json.hpp"
+#include "acceptance/passport_page.hpp"
 #include "cli/command.hpp"
 #include "cli/output.hpp"
 #include "cli/passport_options.hpp"

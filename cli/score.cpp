@@ -10,7 +10,7 @@
 
 #include "config/json_file.hpp"
 #include "config/place.hpp"
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 
 namespace fogbench::cli {
 namespace {

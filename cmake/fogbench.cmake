@@ -28,6 +28,16 @@ function(fogbench_library folder)
   fogbench_sources_at_once(fogbench_${folder})
 endfunction()
 
+# fogbench_text(<folder> <file> <constant>) makes the header <folder>/<file>.hpp for the sources of a
+# room: <constant> in it is the file's text, behind a line break.
+function(fogbench_text folder file constant)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  file(READ ${file} text)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/text.hpp.in
+    ${PROJECT_BINARY_DIR}/made/${folder}/${file}.hpp @ONLY)
+  target_include_directories(fogbench_${folder} PRIVATE ${PROJECT_BINARY_DIR}/made)
+endfunction()
+
 # fogbench_test(<name> SOURCES a_test.cpp ... LINKS targets... LABEL unit|system|slow COST seconds
 # THREADS) declares one GoogleTest executable whose cases ctest runs one by one. THREADS, for what
 # runs several, makes the label end in `_threads`. The target `quick_tests` builds what is not slow,

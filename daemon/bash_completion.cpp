@@ -1,10 +1,10 @@
+#include "daemon/bash_completion.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <map>
 #include <vector>
-
-#include "daemon/manual.hpp"
 
 namespace fogbench::daemon {
 namespace {

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "daemon/bash_completion.hpp"
+
 namespace fogbench::daemon {
 namespace {
 

@@ -29,7 +29,5 @@ std::optional<std::string> asked_manual(int argc, const char* const* argv, const
 
 /// For man(1), in roff.
 std::string manual_page(const CLI::App& app, const ManualText& text);
-/// For bash. Commands, options, the values of those that have a choice, the names of ready files.
-std::string bash_completion(const CLI::App& app);
 
 }  // namespace fogbench::daemon

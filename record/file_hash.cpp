@@ -8,6 +8,9 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <span>
+
+#include "record/chunk_codec.hpp"
 
 namespace fogbench::record {
 
@@ -28,9 +31,11 @@ Result<std::string> file_sha256(const std::filesystem::path& file) {
   std::array<unsigned char, 32> digest{};
   unsigned int length = 0;
   EVP_DigestFinal_ex(context.get(), digest.data(), &length);
-  std::string text;
-  for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
-  return text;
+  return hexadecimal(std::as_bytes(std::span(digest)));
+}
+
+std::string text_sha256(std::string_view text) {
+  return hexadecimal(sha256_of(std::as_bytes(std::span(text))));
 }
 
 }  // namespace fogbench::record

@@ -1,9 +1,7 @@
-// What the bench's SCPI instruments drive, a coil pair's current, the turntable, or measure.
+#include "simulator/scpi_outputs.hpp"
 
 #include <algorithm>
 #include <utility>
-
-#include "simulator/scpi_far_end.hpp"
 
 namespace fogbench::simulator {
 namespace {

@@ -11,7 +11,8 @@
 #include "config/units.hpp"
 #include "model/compare/partition.hpp"
 #include "model/compare/repeatability.hpp"
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
+#include "model/fit/predict.hpp"
 
 namespace fogbench::model {
 namespace {

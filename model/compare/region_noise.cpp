@@ -9,6 +9,8 @@
 #include <numbers>
 #include <random>
 
+#include "model/fit/predict.hpp"
+
 namespace fogbench::model {
 namespace {
 

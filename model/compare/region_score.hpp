@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/fit/gls.hpp"
+#include "model/noise/noise_shapes.hpp"
 
 namespace fogbench::model {
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "model/diagnose/whitened_library.hpp"
+#include "model/fit/gls.hpp"
 
 namespace fogbench::model {
 

@@ -1,6 +1,7 @@
+#include "model/diagnose/excitation.hpp"
+
 #include <fmt/format.h>
 
-#include "model/diagnose/library_builder.hpp"
 #include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {

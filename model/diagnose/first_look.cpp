@@ -4,7 +4,9 @@
 
 #include "model/diagnose/adequacy.hpp"
 #include "model/diagnose/base_columns.hpp"
+#include "model/diagnose/smooth_library.hpp"
 #include "model/diagnose/stage.hpp"
+#include "model/fit/gls.hpp"
 
 namespace fogbench::model {
 

@@ -85,8 +85,4 @@ struct LibrarySource {
 /// user's term that cannot be evaluated.
 Result<Library> make_library(const LibrarySource& source);
 
-/// Smooth functions of each variable that moves, in blocks: what an adequate model leaves flat.
-/// Candidate names say the variables ("field_z_ut", "temperature_c x time_s").
-Library make_smooth_library(const LibrarySource& source);
-
 }  // namespace fogbench::model

@@ -1,4 +1,5 @@
 #pragma once
+// How a library grows.
 
 #include <string>
 #include <vector>
@@ -37,14 +38,5 @@ class LibraryBuilder {
   Eigen::Index count_ = 0;
   std::vector<Eigen::MatrixXd> parts_;
 };
-
-/// Effects of the columns that are not of the measurement table: causes that somebody recorded.
-void add_sensitivities(LibraryBuilder& builder);
-
-/// The shapes that no effect of the catalogue has.
-void add_shadows(LibraryBuilder& builder);
-
-/// Why the effect cannot show in these data although its signals are there; empty when it can.
-std::string unexcited_because(const EffectInfo& info, const Signals& signals);
 
 }  // namespace fogbench::model

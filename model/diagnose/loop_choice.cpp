@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/diagnose/heldout.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/effects/loop.hpp"
 
 namespace fogbench::model {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "model/effects/catalogue.hpp"
 #include "model/effects/loop.hpp"
 
 namespace fogbench::model {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "model/diagnose/stage.hpp"
+#include "model/fit/gls.hpp"
 #include "model/fit/reduction.hpp"
 
 namespace fogbench::model {

@@ -13,7 +13,7 @@
 
 #include "model/diagnose/detector.hpp"
 #include "model/diagnose/heldout.hpp"
-#include "model/fit/gls.hpp"
+#include "model/noise/noise_shapes.hpp"
 
 namespace fogbench::model {
 

@@ -1,5 +1,4 @@
-// Every further column of numbers as a cause, in the generic forms of
-// model/effects/sensitivity.hpp.
+#include "model/diagnose/sensitivities.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +7,7 @@
 #include <set>
 
 #include "config/channels.hpp"
-#include "model/diagnose/library_builder.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/effects/sensitivity.hpp"
 #include "model/table/median.hpp"
 #include "model/table/moving_signals.hpp"

@@ -1,8 +1,9 @@
+#include "model/diagnose/shadows.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "model/diagnose/library_builder.hpp"
 #include "model/table/moving_signals.hpp"
 
 namespace fogbench::model {

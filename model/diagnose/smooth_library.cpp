@@ -1,3 +1,5 @@
+#include "model/diagnose/smooth_library.hpp"
+
 #include "model/diagnose/library_builder.hpp"
 #include "model/table/moving_signals.hpp"
 

@@ -10,6 +10,7 @@
 #include "config/units.hpp"
 #include "model/diagnose/working_table.hpp"
 #include "model/fit/fit.hpp"
+#include "model/fit/predict.hpp"
 #include "model/table/median.hpp"
 
 namespace fogbench::model {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "model/diagnose/library.hpp"
-#include "model/fit/gls.hpp"
+#include "model/noise/noise_shapes.hpp"
 
 namespace fogbench::model {
 

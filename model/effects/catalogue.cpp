@@ -1,3 +1,5 @@
+#include "model/effects/catalogue.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "model/fit/fit.hpp"
+#include "model/fit/predict.hpp"
 
 namespace fogbench::model {
 namespace {

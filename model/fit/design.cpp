@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "model/effects/catalogue.hpp"
+
 namespace fogbench::model {
 namespace {
 

@@ -3,14 +3,21 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <optional>
 
-#include "model/fit/fit_work.hpp"
+#include "config/units.hpp"
+#include "model/fit/fit_lag.hpp"
+#include "model/fit/fit_warnings.hpp"
+#include "model/fit/fitted_model.hpp"
 #include "model/fit/gls.hpp"
 #include "model/fit/inner_search.hpp"
+#include "model/fit/observations.hpp"
+#include "model/noise/stated_errors.hpp"
+#include "model/table/bad_rows.hpp"
 #include "model/table/row_order.hpp"
 
 namespace fogbench::model {
@@ -22,6 +29,48 @@ constexpr double kCoverage = 0.954499736;
 constexpr std::size_t kMostFittedWindows = 10'000;
 /// Below this many rows beyond the unknowns a noise spectrum cannot be told from a constant.
 constexpr std::size_t kEnoughRows = 20;
+// Uncertainties that a lag lets grow by less than this share are not worth a word.
+constexpr double kWorthSaying = 0.1;
+
+/// One fit under way: the system, and what has been found so far.
+struct FitWork {
+  const Table& table;
+  const config::ModelFile& model;
+  const FitOptions& options;
+  const Signals& signals;
+  const Design& design;
+  Observations& observations;
+  FitResult result;
+  Eigen::VectorXd inner;
+  Eigen::VectorXd beta;        ///< of the free columns, the starts' after the model's own
+  Eigen::MatrixXd covariance;  ///< of [free columns, inner], NaN where not determined
+  Eigen::VectorXd
+      variance_at_inner;  ///< of the free columns, the inner parameters held; may be empty
+  double coverage = 2.0;  ///< factor of the expanded uncertainty
+
+  Eigen::Index free() const { return static_cast<Eigen::Index>(design.free_columns().size()); }
+  Eigen::Index unknowns() const { return free() + inner.size(); }
+};
+
+struct Linearised {
+  Eigen::MatrixXd x;
+  Eigen::VectorXd y;
+};
+
+/// X, T = dy/da at the current solution, and y, from rows [X D y] of the observations.
+Linearised linearise(const FitWork& work, const Eigen::MatrixXd& rows) {
+  const Eigen::Index free = work.free();
+  Linearised result{Eigen::MatrixXd::Zero(rows.rows(), work.unknowns()), rows.col(rows.cols() - 1)};
+  result.x.leftCols(free) = rows.leftCols(free);
+  const std::vector<Tangent> tangents = work.design.tangents();
+  for (std::size_t i = 0; i < tangents.size(); ++i) {
+    const Tangent& tangent = tangents[i];
+    const double coefficient = tangent.column < 0 ? tangent.held : work.beta[tangent.column];
+    result.x.col(free + tangent.parameter) +=
+        coefficient * rows.col(free + static_cast<Eigen::Index>(i));
+  }
+  return result;
+}
 
 /// "a, b and c"
 std::string listed(const std::vector<std::string>& names) {
@@ -162,6 +211,219 @@ Result<bool> choose_coloured(FitWork& work) {
   return false;
 }
 
+/// All columns' coefficients, held and free.
+Eigen::VectorXd all_coefficients(const FitWork& work) {
+  const std::vector<DesignColumn>& columns = work.design.columns();
+  Eigen::VectorXd all(static_cast<Eigen::Index>(columns.size()));
+  Eigen::Index next = 0;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    all[static_cast<Eigen::Index>(i)] = columns[i].held ? *columns[i].given : work.beta[next++];
+  }
+  return all;
+}
+
+/// Predicted values, residuals and their size; needs degrees_of_freedom.
+void fill_residuals(FitWork& work) {
+  FitResult& result = work.result;
+  const Eigen::VectorXd everywhere = work.design.predict(all_coefficients(work), work.inner);
+  const std::vector<std::size_t>& taken = work.observations.taken();
+  const auto count = static_cast<Eigen::Index>(taken.size());
+  result.predicted.resize(count);
+  result.rows.resize(taken.size());
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    result.rows[i] = work.signals.table_row(taken[i]);
+    result.predicted[static_cast<Eigen::Index>(i)] =
+        everywhere[static_cast<Eigen::Index>(taken[i])];
+  }
+  result.residual = work.observations.observed() - result.predicted;
+  result.residual_sum_of_squares = result.residual.squaredNorm();
+  result.rms = std::sqrt(result.residual_sum_of_squares / static_cast<double>(count));
+  result.residual_standard_deviation =
+      result.degrees_of_freedom > 0.0
+          ? std::sqrt(result.residual_sum_of_squares / result.degrees_of_freedom)
+          : kMissing;
+}
+
+/// Independent noise: sigma is estimated, as a whole or as a factor on the weights.
+void fill_independent_noise(FitWork& work) {
+  FitResult& result = work.result;
+  const Eigen::VectorXd& sigma = work.observations.sigma();
+  const Eigen::VectorXd scale =
+      sigma.size() > 0 ? sigma : Eigen::VectorXd::Ones(result.residual.size());
+  const double dof = result.degrees_of_freedom;
+  const double factor =
+      dof > 0.0 ? std::sqrt(result.residual.cwiseQuotient(scale).squaredNorm() / dof) : kMissing;
+  result.standard_deviation = factor * scale;
+  result.whitened = result.residual.cwiseQuotient(result.standard_deviation);
+  result.noise.says = "independent, its size estimated from the residual";
+}
+
+/// Coloured noise on the rows themselves. Where windows were joined, a row's own white noise comes
+/// on top of its window's deviation, and no correlation is removed.
+Status fill_coloured_noise(FitWork& work) {
+  FitResult& result = work.result;
+  Result<std::unique_ptr<Whitener>> whitener =
+      make_whitener(work.observations.windows(), result.noise.noise);
+  if (!whitener) return whitener.error();
+  result.windows = work.observations.windows();
+  result.window_of = work.observations.bin_of();
+  result.white_beside_windows = 0.0;
+  for (std::size_t i = 0; i < result.window_of.size(); ++i) {
+    result.white_beside_windows += 3600.0 / work.observations.length_s(i) -
+                                   3600.0 / result.windows.duration_s[result.window_of[i]];
+  }
+  result.white_beside_windows /= static_cast<double>(result.window_of.size());
+  const Eigen::VectorXd deviation = (*whitener)->standard_deviation();
+  const std::vector<Eigen::Index>& bin_of = work.observations.bin_of();
+  if (work.observations.windows().rows() == result.residual.size()) {
+    result.standard_deviation = deviation;
+    result.whitened = (*whitener)->whiten(result.residual);
+    return {};
+  }
+  const double n = result.noise.noise.angle_random_walk_deg_per_sqrt_h;
+  result.standard_deviation.resize(result.residual.size());
+  for (std::size_t i = 0; i < bin_of.size(); ++i) {
+    const double own = work.observations.length_s(i);
+    const double joined = work.observations.windows().duration_s[bin_of[i]];
+    const double white = n * n * 3600.0 * (1.0 / own - 1.0 / joined);
+    result.standard_deviation[static_cast<Eigen::Index>(i)] =
+        std::sqrt(deviation[bin_of[i]] * deviation[bin_of[i]] + white);
+  }
+  result.whitened = result.residual.cwiseQuotient(result.standard_deviation);
+  return {};
+}
+
+/// Estimates with their uncertainty, and warnings of inner parameters that are not identified.
+void fill_estimates(FitWork& work) {
+  FitResult& result = work.result;
+  const auto error_of = [&](Eigen::Index i) { return std::sqrt(work.covariance(i, i)); };
+  Eigen::Index next = 0;
+  std::vector<Eigen::Index> reported;  // of the free columns and inner parameters
+  for (std::size_t i = 0; i < work.design.own_columns(); ++i) {
+    const DesignColumn& column = work.design.columns()[i];
+    if (column.held) {
+      result.estimates.push_back({column.name, column.unit, *column.given, 0.0, 2.0, true});
+      continue;
+    }
+    // A column that was left out has no covariance and a zero coefficient.
+    const bool left_out = std::isnan(work.covariance(next, next)) && work.beta[next] == 0.0;
+    result.estimates.push_back({column.name, column.unit, left_out ? kMissing : work.beta[next],
+                                error_of(next), work.coverage, false});
+    if (next < work.variance_at_inner.size()) {
+      result.estimates.back().error_at_inner = std::sqrt(work.variance_at_inner[next]);
+    }
+    reported.push_back(next++);
+  }
+  next = work.free();  // past the starts
+  for (std::size_t i = 0; i < work.design.parameters().size(); ++i, ++next) {
+    reported.push_back(next);
+    const DesignParameter& parameter = work.design.parameters()[i];
+    const double value = work.inner[static_cast<Eigen::Index>(i)];
+    result.estimates.push_back(
+        {parameter.name, parameter.unit, value, error_of(next), work.coverage, false, true});
+    if (std::isnan(error_of(next)) && result.degrees_of_freedom > 0.0) {
+      result.warnings.push_back(
+          fmt::format("{} has no influence on these data: it is not determined", parameter.name));
+    }
+    if (!parameter.range) continue;
+    const double slack = 1e-3 * (parameter.range->maximum - parameter.range->minimum);
+    const bool log_scale = parameter.range->logarithmic;
+    const double low =
+        log_scale ? parameter.range->minimum * 1.001 : parameter.range->minimum + slack;
+    const double high =
+        log_scale ? parameter.range->maximum * 0.999 : parameter.range->maximum - slack;
+    if (value <= low || value >= high) {
+      result.warnings.push_back(fmt::format(
+          "{} = {:.4g} {} lies at the edge of its range {:.4g}..{:.4g} or outside: these data do "
+          "not identify it",
+          parameter.name, value, parameter.unit, parameter.range->minimum,
+          parameter.range->maximum));
+    }
+  }
+  result.covariance = work.covariance(reported, reported);
+}
+
+/// "row 38 (time 6840 s, segment coil_z/up)"
+std::string name_of_row(const Table& table, std::size_t row) {
+  std::string where;
+  const auto add = [&](const std::string& text) {
+    where += where.empty() ? " (" : ", ";
+    where += text;
+  };
+  if (table.has("time_s")) add(fmt::format("time {:g} s", table.column("time_s")[row]));
+  if (!table.segment().at(row).empty()) {
+    add(fmt::format("segment {}", table.segment().at(row)));
+  }
+  if (table.run().values.size() > 1) add(fmt::format("run {}", table.run().at(row)));
+  return fmt::format("Row {}{}{}", row + 1, where, where.empty() ? "" : ")");
+}
+
+/// Single rows that the rest of them contradicts.
+std::vector<LeftOut> find_left_out(const FitWork& work) {
+  std::vector<LeftOut> out;
+  const std::vector<std::size_t>& taken = work.observations.taken();
+  if (taken.size() > static_cast<std::size_t>(kMostRowsToDoubt)) return out;
+  Windows windows = work.observations.row_windows_or_sequence();
+  if (work.observations.sigma().size() > 0) windows.white_floor = work.observations.sigma();
+  windows.white_scale = stated_white_scale(windows);
+  const auto shapes = NoiseShapes::make(windows, work.options.prior);
+  if (!shapes) return out;
+  const Linearised system =
+      linearise(work, work.observations.rows(work.inner, work.inner.size() > 0));
+  if (!system.x.allFinite()) return out;
+  for (const BadRow& bad : find_bad_rows(windows, *shapes, system.x, system.y)) {
+    const std::size_t row = work.signals.table_row(taken[static_cast<std::size_t>(bad.row)]);
+    out.push_back({row, bad.off, bad.sigmas,
+                   fmt::format("{} is left out: {:.3g} {} {} what the other rows say, {:.0f} "
+                               "standard deviations; nothing around it shares that",
+                               name_of_row(work.table, row), std::abs(bad.off),
+                               config::unit_of(work.model.observable),
+                               bad.off > 0.0 ? "above" : "below", bad.sigmas)});
+  }
+  return out;
+}
+
+/// What an unknown lag of the thermometer may do is added to the covariance, and said where that
+/// matters. Precondition: coloured noise.
+void allow_for_lag(FitWork& work) {
+  if (!may_read_late(work.table, work.signals)) return;
+  FitWork now = work;
+  now.result.warnings.clear();
+  fill_residuals(now);
+  fill_estimates(now);
+  const auto rise =
+      rise_in_a_second(work.table, work.signals, fitted_model(work.model, work.design, now.result),
+                       work.observations);
+  const auto whitener = make_whitener(work.observations.windows(), work.result.noise.noise);
+  if (!rise || !whitener) return;
+  const Eigen::MatrixXd x =
+      linearise(work, work.observations.window_rows(work.inner, work.inner.size() > 0)).x;
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    if (std::isfinite(work.covariance(i, i))) known.push_back(i);
+  }
+  const Eigen::VectorXd moved = kUsualLag_s * (*whitener)
+                                                  ->whiten(x(Eigen::all, known))
+                                                  .colPivHouseholderQr()
+                                                  .solve((*whitener)->whiten(*rise).col(0));
+  std::vector<std::string> wider;
+  const std::vector<Eigen::Index> free = work.design.free_columns();
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const double before = work.covariance(known[k], known[k]);
+    const double added = moved[static_cast<Eigen::Index>(k)] * moved[static_cast<Eigen::Index>(k)];
+    if (known[k] >= work.free() || std::sqrt(1.0 + added / before) < 1.0 + kWorthSaying) continue;
+    const DesignColumn& column =
+        work.design.columns()[static_cast<std::size_t>(free[static_cast<std::size_t>(known[k])])];
+    if (!column.start) wider.push_back(column.name);
+  }
+  work.covariance(known, known) += moved * moved.transpose();
+  if (wider.empty()) return;
+  work.result.warnings.push_back(
+      fmt::format("the table does not say that its temperatures are freed of their sensor's lag "
+                  "(temperature_start_c): a usual lag of {:.0f} s is part of the uncertainty of {}",
+                  kUsualLag_s, fmt::join(wider, ", ")));
+}
+
 /// Given coefficients held against the data. The noise is what a free fit of the same terms leaves,
 /// where one is possible.
 Result<FitResult> hold(FitWork work) {
@@ -239,18 +501,13 @@ double coverage_factor(double degrees_of_freedom) {
   return boost::math::quantile(distribution, (1.0 + kCoverage) / 2.0);
 }
 
-Linearised linearise(const FitWork& work, const Eigen::MatrixXd& rows) {
-  const Eigen::Index free = work.free();
-  Linearised result{Eigen::MatrixXd::Zero(rows.rows(), work.unknowns()), rows.col(rows.cols() - 1)};
-  result.x.leftCols(free) = rows.leftCols(free);
-  const std::vector<Tangent> tangents = work.design.tangents();
-  for (std::size_t i = 0; i < tangents.size(); ++i) {
-    const Tangent& tangent = tangents[i];
-    const double coefficient = tangent.column < 0 ? tangent.held : work.beta[tangent.column];
-    result.x.col(free + tangent.parameter) +=
-        coefficient * rows.col(free + static_cast<Eigen::Index>(i));
-  }
-  return result;
+Table without_readings(Table table, const std::string& observable,
+                       const std::vector<LeftOut>& left_out) {
+  const auto given = table.column(observable);
+  std::vector<double> values(given.begin(), given.end());
+  for (const LeftOut& row : left_out) values[row.row] = kMissing;
+  table.set_column(observable, std::move(values));
+  return table;
 }
 
 Result<FitResult> fit(const Table& table, const config::ModelFile& model,
@@ -289,9 +546,10 @@ Result<FitResult> fit(const Table& table, const config::ModelFile& model,
   }
   fill_estimates(work);
   warn_of_calendar(work);
-  warn_of_correlation(work.result);
-  warn_of_little_evidence(work.result);
-  work.result.fitted = fitted_model(work);
+  for (std::string& warning : weak_evidence(work.result)) {
+    work.result.warnings.push_back(std::move(warning));
+  }
+  work.result.fitted = fitted_model(model, *design, work.result);
   return std::move(work.result);
 }
 

@@ -32,7 +32,7 @@ struct FitOptions {
   bool as_is = false;                       ///< hold every given coefficient, fit nothing
   NoisePrior prior = {};                    ///< of coloured noise
   bool doubt_rows = true;                   ///< look for single bad readings, and leave them out
-  bool doubt_lag = true;                    ///< the thermometer may read late: fit_lag.cpp
+  bool doubt_lag = true;                    ///< the thermometer may read late: fit_lag.hpp
   std::vector<std::size_t> leave_out = {};  ///< rows of the table that take no part
 };
 
@@ -94,10 +94,5 @@ Result<FitResult> fit(const Table& table, const config::ModelFile& model,
 /// them.
 Table without_readings(Table table, const std::string& observable,
                        const std::vector<LeftOut>& left_out);
-
-/// Values of the model on the table, NaN where a signal is missing. All coefficients must be given.
-/// How an effect's memory began is found from the observable where the table has it, as in a fit;
-/// without it memories begin at rest.
-Result<Eigen::VectorXd> predict(const Table& table, const config::ModelFile& model);
 
 }  // namespace fogbench::model

@@ -1,10 +1,11 @@
+#include "model/fit/predict.hpp"
+
 #include <fmt/format.h>
 
 #include <Eigen/QR>
 #include <cmath>
 
 #include "model/fit/design.hpp"
-#include "model/fit/fit.hpp"
 
 namespace fogbench::model {
 namespace {

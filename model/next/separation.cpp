@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/effects/catalogue.hpp"
 #include "model/fit/design.hpp"
 #include "model/table/moving_signals.hpp"
 

@@ -8,8 +8,9 @@
 #include <limits>
 #include <optional>
 
-#include "model/diagnose/library_builder.hpp"
+#include "model/diagnose/excitation.hpp"
 #include "model/diagnose/present_run.hpp"
+#include "model/effects/catalogue.hpp"
 
 namespace fogbench::model {
 namespace {

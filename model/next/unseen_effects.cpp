@@ -7,7 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "model/diagnose/library_builder.hpp"
+#include "model/diagnose/excitation.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/next/separation.hpp"
 #include "model/next/set_choice.hpp"
 

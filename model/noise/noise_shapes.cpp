@@ -1,7 +1,8 @@
+#include "model/noise/noise_shapes.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "model/fit/gls.hpp"
 #include "model/noise/stated_errors.hpp"
 #include "model/noise/window_geometry.hpp"
 #include "model/table/median.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "model/fit/gls.hpp"
+#include "model/noise/noise_shapes.hpp"
 
 namespace fogbench::model {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/fit/gls.hpp"
+#include "model/noise/noise_shapes.hpp"
 
 namespace fogbench::model {
 

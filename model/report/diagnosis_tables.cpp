@@ -8,7 +8,7 @@
 
 #include "config/rounding.hpp"
 #include "model/diagnose/verdict_text.hpp"
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/report/report_page.hpp"
 #include "model/report/report_plots.hpp"
 #include "model/report/svg_plot.hpp"

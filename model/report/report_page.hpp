@@ -2,6 +2,11 @@
 // What the HTML pages share: the frame with its style and script, headings with units, numbers, and
 // the table of coefficients. One file, nothing from outside; prints on paper; readable without the
 // script.
+//
+// report.css: ink on paper, readable in black and white. Blue and vermilion stay apart for every
+// kind of colour sight (Okabe and Ito's palette); what matters has a shape of its own as well.
+// report.js: a path's marks begin with "M x y" each and stand for the rows that data-rows lists in
+// the same order. The pointer (or the arrow keys) chooses a row; a ring marks it in every plot.
 
 #include <string>
 #include <string_view>
@@ -17,8 +22,6 @@ std::string page_start(const std::string& title, std::string_view language = "en
 /// The rest, with `rows_json` for the script: what a pointed-at row shows (report_plots.hpp).
 /// Without it the page has no script.
 std::string page_end(const std::string& rows_json = {});
-/// The script that says which row a point is and finds it again in the other plots.
-std::string_view page_script();
 
 /// "temperature, degC" of "temperature_c"; time is printed in hours.
 std::string heading_of(const std::string& variable);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "model/fit/gls.hpp"
+
 namespace fogbench::model {
 
 using Eigen::Index;

@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "model/fit/gls.hpp"
+#include "model/noise/noise_shapes.hpp"
 
 namespace fogbench::model {
 

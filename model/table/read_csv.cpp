@@ -1,5 +1,4 @@
-// Reads a measurement table from CSV in one pass through a fixed buffer: memory is that of the
-// columns, whatever the file holds, and the columns are as short as the caller wants them.
+#include "model/table/read_csv.hpp"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -18,7 +17,6 @@
 #include "model/table/condense.hpp"
 #include "model/table/csv_fields.hpp"
 #include "model/table/line_reader.hpp"
-#include "model/table/table.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -3,7 +3,6 @@
 // each row.
 
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <span>
@@ -11,14 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "config/result.hpp"
-
 namespace fogbench::model {
 
 /// In tables and results: no value.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-inline constexpr std::size_t kEveryRow = std::numeric_limits<std::size_t>::max();
 
 /// Texts of one column, stored once each: a table has millions of rows and a few segments.
 struct TextColumn {
@@ -66,19 +61,5 @@ class Table {
   std::map<std::string, std::string, std::less<>> dropped_;
   TextColumn run_, segment_;
 };
-
-/// Reads CSV: comma-separated, first line names (after any lines that begin with '#'), '.'
-/// decimals, empty or NaN missing, lines at most 1 MiB, empty lines and columns without a name
-/// skipped. `renames` maps a wanted name to the file's ("rate_deg_per_h" -> "omega"); the column
-/// that had the wanted name, if any, is dropped.
-/// Text in a column of numbers is kBadInput with file, line and column; a column that is not of the
-/// measurement table is dropped instead.
-///
-/// Of a file with more than `most_rows` rows, neighbours of one run and segment are averaged while
-/// it is read, so that memory is bounded by `most_rows`: a duration becomes the sum, a standard
-/// error that of the mean. Where the rows of a run are not in order of time, all are kept.
-Result<Table> read_csv(const std::filesystem::path& file,
-                       const std::map<std::string, std::string>& renames = {},
-                       std::size_t most_rows = kEveryRow);
 
 }  // namespace fogbench::model

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "acceptance/passport_json.hpp"
+#include "acceptance/passport_page.hpp"
 #include "config/paths.hpp"
 #include "record/run_log.hpp"
 #include "tests/support/source_tree.hpp"

@@ -44,6 +44,10 @@ TEST(Architecture, EverySourceHasARoom) {
   EXPECT_THAT(homeless_sources(tree()), IsEmpty());
 }
 
+TEST(Architecture, EverySourceHasAHeaderOfItsName) {
+  EXPECT_THAT(sources_without_header(tree()), IsEmpty());
+}
+
 TEST(Architecture, TimeComesFromTheClockAndChanceFromASeed) {
   EXPECT_THAT(machine_time_or_chance(tree()), IsEmpty());
 }

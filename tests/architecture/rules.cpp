@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <regex>
 #include <sstream>
 
@@ -62,8 +63,10 @@ Violations forbidden_includes(const Tree& tree) {
     if (!file.is_cpp()) continue;
     for (const std::string& include : quoted_includes(file)) {
       const std::string to = include.substr(0, include.find('/'));
-      // What the build makes stands there as its template.
-      if (find(tree, include) == nullptr && find(tree, include + ".in") == nullptr) {
+      // What the build makes stands there as its template, or as the text that it holds.
+      const std::string text = include.substr(0, include.rfind('.'));
+      if (find(tree, include) == nullptr && find(tree, include + ".in") == nullptr &&
+          find(tree, text) == nullptr) {
         found.push_back(fmt::format("{} includes \"{}\": no such file from the repository's root",
                                     file.path, include));
       } else if (!may_see(file.folder(), to)) {
@@ -130,6 +133,27 @@ Violations homeless_sources(const Tree& tree) {
     if (file.is_cpp() && !is_room(file.folder()) && file.folder() != "tests") {
       found.push_back(fmt::format("{}: its folder is not a room of the house", file.path));
     }
+  }
+  return found;
+}
+
+Violations sources_without_header(const Tree& tree) {
+  const SourceFile* commands = find(tree, "cli/command.hpp");
+  Violations found;
+  for (const SourceFile& file : tree) {
+    if (!file.path.ends_with(".cpp") || !is_in_room(file) || kLooseRooms.contains(file.folder())) {
+      continue;
+    }
+    const std::string header = file.path.substr(0, file.path.size() - 3) + "hpp";
+    const std::string name = std::filesystem::path(file.path).stem();
+    const bool is_family = file.path.starts_with("model/effects/catalogue/") ||
+                           file.path.starts_with("simulator/effects/");
+    const bool is_command = file.folder() == "cli" && commands != nullptr &&
+                            commands->code.find("void add_" + name + "(") != std::string::npos;
+    if (name == "main" || is_family || is_command || find(tree, header) != nullptr) continue;
+    found.push_back(fmt::format(
+        "{} has no {} beside it: join it with what it was cut from, or say there what it is",
+        file.path, header));
   }
   return found;
 }

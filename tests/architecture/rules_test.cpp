@@ -57,6 +57,13 @@ TEST(ForbiddenIncludes, IgnoresIncludesInComments) {
   EXPECT_THAT(forbidden_includes(tree), IsEmpty());
 }
 
+TEST(ForbiddenIncludes, AllowsWhatTheBuildMakes) {
+  const Tree tree{
+      file("model/a.cpp", "#include \"model/families.hpp\"\n#include \"model/page.css.hpp\"\n"),
+      file("model/families.hpp.in", ""), file("model/page.css", "")};
+  EXPECT_THAT(forbidden_includes(tree), IsEmpty());
+}
+
 TEST(WrongLinks, FindsALinkAgainstTheTable) {
   const Tree tree{file("procedures/CMakeLists.txt",
                        "fogbench_library(procedures SOURCES a.cpp PUBLIC fogbench::simulator)\n"
@@ -85,6 +92,25 @@ TEST(UnlistedSources, LeavesARoomToItsPattern) {
 TEST(HomelessSources, FindsAFolderThatTheTableDoesNotKnow) {
   const Tree tree{file("misc/helper.cpp", ""), file("tests/cli/a_test.cpp", "")};
   EXPECT_THAT(homeless_sources(tree), ElementsAre(HasSubstr("misc/helper.cpp")));
+}
+
+TEST(SourcesWithoutHeader, FindsAPartOfAnotherFile) {
+  const Tree tree{file("model/fit/fit.hpp", ""),
+                  file("model/fit/fit.cpp", ""),
+                  file("model/fit/fit_results.cpp", ""),
+                  file("cli/command.hpp", "void add_fit();"),
+                  file("cli/fit.cpp", ""),
+                  file("cli/fit_text.cpp", "")};
+  EXPECT_THAT(sources_without_header(tree),
+              ElementsAre(HasSubstr("model/fit/fit_results.cpp has no model/fit/fit_results.hpp"),
+                          HasSubstr("cli/fit_text.cpp")));
+}
+
+TEST(SourcesWithoutHeader, AcceptsProgramsFamiliesOfEffectsAndTests) {
+  EXPECT_THAT(sources_without_header(
+                  {file("daemon/main.cpp", ""), file("model/effects/catalogue/bias.cpp", ""),
+                   file("simulator/effects/drift.cpp", ""), file("tests/cli/a_test.cpp", "")}),
+              IsEmpty());
 }
 
 TEST(MachineTimeOrChance, FindsTheMachinesClockAndUnseededChance) {

@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 namespace {
 
 bool is_read(const fs::path& file, const std::string& relative) {
-  static constexpr std::array kExtensions{".cpp", ".hpp", ".in", ".cmake", ".md", ".txt"};
+  static constexpr std::array kExtensions{".cpp", ".hpp", ".in", ".cmake",
+                                          ".css", ".js",  ".md", ".txt"};
   return std::find(kExtensions.begin(), kExtensions.end(), file.extension()) != kExtensions.end() ||
          relative.starts_with("scripts/") || relative.starts_with(".ci/");
 }

@@ -20,7 +20,7 @@ struct SourceFile {
   std::string_view folder() const;
 };
 
-/// Every text that people write by hand (C++, CMake, scripts, documents), sorted by path.
+/// Every text that people write by hand (C++, CMake, pages, scripts, documents), sorted by path.
 /// Build trees, hidden folders except .ci, and the demo's output are left out.
 std::vector<SourceFile> read_tree(const std::filesystem::path& root);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 
 namespace fogbench::tests {
 namespace {

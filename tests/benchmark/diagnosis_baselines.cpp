@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/noise/noise.hpp"
 #include "tests/benchmark/candidate_columns.hpp"
 

@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "model/fit/fit.hpp"
+#include "model/table/read_csv.hpp"
 
 namespace fogbench::model {
 namespace {

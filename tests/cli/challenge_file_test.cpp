@@ -99,15 +99,23 @@ TEST_F(ChallengeFileTest, ChangedDataWithTheirNewHashBreakTheSealToo) {
   EXPECT_THAT(changed(before, *record::file_sha256(data_)), HasSubstr("the seal is broken"));
 }
 
-TEST_F(ChallengeFileTest, AnythingChangedBesideTheSealBreaksIt) {
+TEST_F(ChallengeFileTest, AnythingChangedBreaksTheSeal) {
   EXPECT_THAT(changed("coil-sweep", "coil-sweeps"), HasSubstr("/seal: the seal is broken"));
   EXPECT_THAT(changed("60.0", "61.0"), HasSubstr("/seal: the seal is broken"));
   EXPECT_THAT(changed("navigation", "tactical"), HasSubstr("/seal: the seal is broken"));
+  EXPECT_THAT(changed("\"hidden\": \"7b22", "\"hidden\": \"7b23"),
+              HasSubstr("/seal: the seal is broken"));
+  EXPECT_THAT(changed("\"seal\": \"", "\"seal\": \"0"), HasSubstr("/seal: the seal is broken"));
+}
+
+TEST_F(ChallengeFileTest, ASealOfAnOlderVersionIsSaidToBeOne) {
+  const auto begin = text_.find("\"hidden\""), end = text_.find("\"seal\"");
+  EXPECT_THAT(changed(text_.substr(begin, end - begin), ""), HasSubstr("older version"));
 }
 
 TEST_F(ChallengeFileTest, ACutOrDamagedFileIsSaidToBeSo) {
   EXPECT_THAT(changed(text_.substr(text_.size() / 2), ""), HasSubstr("sealed.json: line "));
-  EXPECT_THAT(changed(text_.substr(text_.size() - 40, 30), ""), HasSubstr("letters long"));
+  EXPECT_THAT(changed(text_.substr(text_.size() - 40, 30), ""), HasSubstr("the seal is broken"));
   EXPECT_THAT(changed("\"seal\"", "\"sael\""), HasSubstr("sael"));
   EXPECT_THAT(changed("\"says\": \"A gyro.\"", "\"says\": 7"), HasSubstr("/says"));
 }

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "config/model_file.hpp"
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 
 namespace fogbench::cli {
 namespace {

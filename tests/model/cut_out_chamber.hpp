@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/fit/fit.hpp"
+#include "model/fit/predict.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

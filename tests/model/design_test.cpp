@@ -1,6 +1,7 @@
 // The derivatives that the fit uses, against finite differences of another order and step.
 
 #include "model/fit/design.hpp"
+#include "model/effects/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

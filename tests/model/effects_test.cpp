@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 
 namespace fogbench::model {
 namespace {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "model/fit/fit.hpp"
+#include "model/fit/predict.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "model/fit/predict.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

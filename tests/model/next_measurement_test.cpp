@@ -2,6 +2,7 @@
 // that engineers know, and what cannot tell effects apart is never recommended.
 
 #include "model/next/next_measurement.hpp"
+#include "model/effects/catalogue.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <set>
 
-#include "model/effects/effect.hpp"
 #include "model/next/bench_schedule.hpp"
 #include "model/next/separation.hpp"
 #include "tests/model/models.hpp"

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/fit/fit.hpp"
+#include "model/table/read_csv.hpp"
 #include "tests/support/source_tree.hpp"
 
 namespace fogbench::model {

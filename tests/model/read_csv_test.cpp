@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "model/table/table.hpp"
+#include "model/table/read_csv.hpp"
 #include "model/table/write_csv.hpp"
 #include "tests/support/temporary_folder.hpp"
 

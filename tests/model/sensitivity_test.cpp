@@ -8,7 +8,9 @@
 
 #include "model/diagnose/diagnose.hpp"
 #include "model/diagnose/verdict_text.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/fit/fit.hpp"
+#include "model/fit/predict.hpp"
 #include "tests/model/models.hpp"
 
 namespace fogbench::model {

@@ -2,6 +2,7 @@
 // against its own heat balance.
 
 #include "model/next/separation.hpp"
+#include "model/effects/catalogue.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

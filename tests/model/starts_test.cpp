@@ -7,7 +7,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "model/effects/effect.hpp"
+#include "model/effects/catalogue.hpp"
 #include "model/fit/compensate.hpp"
 #include "model/fit/fit.hpp"
 #include "tests/model/cut_out_chamber.hpp"

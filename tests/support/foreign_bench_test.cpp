@@ -2,14 +2,13 @@
 // states, and an effect the signal-to-noise ratio that was asked for.
 
 #include "tests/support/foreign_bench.hpp"
+#include "model/effects/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 #include <set>
-
-#include "model/effects/effect.hpp"
 
 namespace fogbench::tests {
 namespace {

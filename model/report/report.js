@@ -1,11 +1,3 @@
-#include "model/report/report_page.hpp"
-
-namespace fogbench::model {
-
-// A path's marks begin with "M x y" each and stand for the rows that data-rows lists in the same
-// order. The pointer (or the arrow keys) chooses a row; a ring marks it in every plot.
-std::string_view page_script() {
-  return R"(
 (() => {
   const data = JSON.parse(document.getElementById('rows').textContent);
   const tip = document.getElementById('tip');
@@ -95,7 +87,3 @@ std::string_view page_script() {
     });
   }
 })();
-)";
-}
-
-}  // namespace fogbench::model
