@@ -10,6 +10,7 @@
 #include <optional>
 #include <thread>
 
+#include "cli/bench_reach.hpp"
 #include "cli/command.hpp"
 #include "cli/diagnosis_json.hpp"
 #include "cli/diagnosis_text.hpp"
@@ -39,6 +40,7 @@ struct DiagnoseOptions {
   std::string quiet, noise;
   std::string report;
   std::string output;
+  std::string bench;
   std::vector<std::string> candidates;
   std::uint64_t seed = model::DiagnoseOptions{}.seed;
   bool each = false;
@@ -144,6 +146,9 @@ Status read_given(const DiagnoseOptions& options, Given& given) {
   auto how = options_of(options);
   if (!how) return how.error();
   given.how = std::move(*how);
+  const auto reach = bench_reach(options.bench, options.data);
+  if (!reach) return reach.error();
+  given.how.reach = *reach;
   auto noise = chosen_noise(options.noise, options.data);
   if (!noise) return noise.error();
   given.how.prior = noise->prior;
@@ -296,6 +301,9 @@ void add_diagnose(CLI::App& app, Action& action) {
         command.add_option("--report", options.report, "Write one self-contained HTML page");
         command.add_option("-o,--output", options.output,
                            "Write the model with what was found, fitted");
+        command.add_option("--bench", options.bench,
+                           "The bench that will do what is proposed: nothing beyond its limits is "
+                           "(default: the run's own)");
         command.add_option("--seed", options.seed, "Of the simulated noise behind the p-values");
         command.add_flag("--each", options.each,
                          "Diagnose every DATA by itself: a line each, the worst exit status");

@@ -161,8 +161,8 @@ class Work {
     if (d_.verdict == Verdict::kUnexplained) suggest(source, base->columns, last, base->y);
     doubt_walk(input_of_search, smooth);
     drop_bounds_of_rivals();
-    d_.next_measurements = next_measurements(
-        {d_.table, d_.after.fitted, noise_to_plan_with(), d_.ambiguous, d_.not_testable});
+    d_.next_measurements = next_measurements({d_.table, d_.after.fitted, noise_to_plan_with(),
+                                              d_.ambiguous, d_.not_testable, options_.reach});
     std::erase_if(d_.notes, [&](const std::string& note) {
       const auto& said = d_.after.warnings;
       return std::find(said.begin(), said.end(), note) != said.end();

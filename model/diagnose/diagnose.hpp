@@ -105,6 +105,7 @@ struct DiagnoseOptions {
   /// Terms of the user that take part as candidates beside the catalogue (expressions, or
   /// catalogue effects with starting values).
   std::vector<config::ModelTerm> candidates;
+  BenchReach reach = {};  ///< of the bench that would do what is proposed
   std::uint64_t seed = 20260101;
   /// Called with a few words as each part of the work begins, and the share done (0 ... 1).
   std::function<void(const std::string& part, double share)> progress;

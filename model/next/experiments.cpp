@@ -1,8 +1,12 @@
 #include "model/next/experiments.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -19,16 +23,35 @@ constexpr double kWarmUp_s = 2400.0;
 constexpr double kFieldAverage_s = 180.0;
 constexpr double kPlateauAverage_s = 60.0;
 constexpr double kTransient_s = 60.0;
-// The largest field and temperatures of the standard procedures.
-constexpr double kEndField_ut = 300.0;
+constexpr double kFieldStep_ut = 50.0;
 constexpr std::array<double, 6> kSetPoints_c = {31, 35, 40, 45, 50, 55};
+// Less far above the room a thermal experiment shows little, and its set points are few.
+constexpr double kLeastWarmest_c = 45.0;
 
-std::vector<double> standard_levels() {
+/// 0, up to the end, down to the other end, and back.
+std::vector<double> sweep_levels(double end_ut, double step_ut) {
   std::vector<double> levels;
-  for (double h = 0; h <= kEndField_ut; h += 50) levels.push_back(h);
-  for (double h = kEndField_ut - 50; h >= -kEndField_ut; h -= 50) levels.push_back(h);
-  for (double h = -kEndField_ut + 50; h <= 0; h += 50) levels.push_back(h);
+  for (double h = 0; h <= end_ut; h += step_ut) levels.push_back(h);
+  for (double h = levels.back() - step_ut; h >= -end_ut; h -= step_ut) levels.push_back(h);
+  for (double h = levels.back() + step_ut; h <= 0; h += step_ut) levels.push_back(h);
   return levels;
+}
+
+/// What a procedure is told where its own levels are beyond this bench: " with levels_ut 0, 50
+/// ...".
+std::string levels_told(const BenchState& state, const char* joint) {
+  if (state.reach.field_ut == BenchReach::kStandard_ut) return "";
+  return fmt::format("{}levels_ut 0, 50 ... {:g} ... -{:g} ... 0", joint, state.reach.field_ut,
+                     state.reach.field_ut);
+}
+
+/// Those of the values that the bench reaches.
+template <class Values>
+std::vector<double> within(const Values& values, double most) {
+  std::vector<double> out;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(out),
+               [&](double value) { return std::abs(value) <= most; });
+  return out;
 }
 
 std::vector<double> negated(std::vector<double> levels) {
@@ -72,30 +95,32 @@ class List {
 void add_field_experiments(List& list, const BenchState& state, char axis) {
   const std::string letter(1, axis);
   const std::string name(1, static_cast<char>(axis - 'x' + 'X'));
-  const auto levels = standard_levels();
+  const double end = state.reach.field_ut;
+  const auto levels = sweep_levels(end, kFieldStep_ut);
   {
     BenchSchedule bench = warm_at(state, axis, state.held_c);
     bench.sweep(axis, levels, kFieldAverage_s);
-    list.add("sweep_" + letter, fmt::format("sweep O{} (coil-sweep)", name), bench, kField, axis);
+    list.add("sweep_" + letter,
+             fmt::format("sweep O{} (coil-sweep{})", name, levels_told(state, " with ")), bench,
+             kField, axis);
   }
   {
     BenchSchedule bench = warm_at(state, axis, state.held_c);
-    for (const double level : {kEndField_ut, 0.0, -kEndField_ut, 0.0}) {
+    for (const double level : {end, 0.0, -end, 0.0}) {
       bench.field(axis, level);
       bench.wait(5.0);
       bench.record(1800.0, kFieldAverage_s, "coil_" + letter + "/hold");
     }
     list.add("hold_" + letter,
-             fmt::format("hold +300 and -300 uT along O{} for half an hour each, with half an hour "
-                         "at zero after each (a sweep of levels_ut 300, 0, -300, 0, each ten "
-                         "times, average_s 180)",
-                         name),
+             fmt::format("hold +{1:g} and -{1:g} uT along O{0} for half an hour each, with half an "
+                         "hour at zero after each (a sweep of levels_ut {1:g}, 0, -{1:g}, 0, each "
+                         "ten times, average_s 180)",
+                         name, end),
              bench, kField, axis);
   }
   {
     BenchSchedule bench = warm_at(state, axis, state.held_c);
-    bench.sweep(axis, {0, 100, 200, 300, 200, 100, 0, -100, -200, -300, -200, -100, 0},
-                kFieldAverage_s / 2.0, 2);
+    bench.sweep(axis, sweep_levels(end, 100.0), kFieldAverage_s / 2.0, 2);
     list.add("two_windows_" + letter,
              fmt::format("sweep O{} in steps of 100 uT with two windows in each point, early and "
                          "late (each level twice in levels_ut, average_s 90)",
@@ -104,52 +129,53 @@ void add_field_experiments(List& list, const BenchState& state, char axis) {
   }
   {
     BenchSchedule bench = warm_at(state, axis, state.held_c);
-    bench.sweep(axis, {0, 300, 0, -300, 0}, 30.0, 20);
+    bench.sweep(axis, {0, end, 0, -end, 0}, 30.0, 20);
     list.add("dwell_" + letter,
-             fmt::format("step O{} between 0, +300 and -300 uT and stay ten minutes at each level, "
-                         "in windows of 30 s (each level twenty times in levels_ut, average_s 30)",
-                         name),
+             fmt::format("step O{0} between 0, +{1:g} and -{1:g} uT and stay ten minutes at each "
+                         "level, in windows of 30 s (each level twenty times in levels_ut, "
+                         "average_s 30)",
+                         name, end),
              bench, kField, axis);
   }
   {
     BenchSchedule bench = warm_at(state, axis, state.held_c);
     std::vector<double> loops;
-    for (const double end : {100.0, 200.0, 300.0}) {
+    for (const double share : {1.0, 2.0, 3.0}) {
       for (const double part : {0.0, 0.5, 1.0, 0.5, 0.0, -0.5, -1.0, -0.5, 0.0}) {
-        loops.push_back(end * part);
+        loops.push_back(end * share / 3.0 * part);
       }
     }
     bench.sweep(axis, loops, kFieldAverage_s);
-    list.add("minor_loops_" + letter,
-             fmt::format("sweep O{} in small and large loops, with end fields of 100, 200 and "
-                         "300 uT (coil-sweep with levels_ut 0, 50, 100, 50, 0, -50, -100, -50, 0, "
-                         "100, 200 ...)",
-                         name),
-             bench, kField, axis);
+    list.add(
+        "minor_loops_" + letter,
+        fmt::format("sweep O{} in small and large loops, with end fields of {:.4g}, {:.4g} and "
+                    "{:g} uT (coil-sweep with levels_ut {:.4g} ...)",
+                    name, end / 3.0, end / 1.5, end, fmt::join(std::span(loops).first(9), ", ")),
+        bench, kField, axis);
   }
   {
-    const double second_c = state.held_c < 38.0 ? 45.0 : 31.0;
+    const double second_c = state.held_c < 38.0 ? std::min(45.0, state.reach.warmest_c) : 31.0;
     BenchSchedule bench = warm_at(state, axis, second_c);
     bench.sweep(axis, levels, kFieldAverage_s);
     list.add("second_temperature_" + letter,
              fmt::format("repeat the sweep of O{} at a second thermostat temperature, {:g} degC "
-                         "(second-temperature with second_c {:g})",
-                         name, second_c, second_c),
+                         "(second-temperature with second_c {:g}{})",
+                         name, second_c, second_c, levels_told(state, " and ")),
              bench, kField, axis);
   }
   {
     BenchSchedule bench = warm_at(state, axis, state.held_c);
-    const std::vector<double> ramp{0, 150, 300, 150, 0, -150, -300, -150, 0};
+    const auto ramp = sweep_levels(end, end / 2.0);
     bench.sweep(axis, ramp, 60.0);
-    bench.heat(Heater::kBoost, 55.0);
+    bench.heat(Heater::kBoost, state.reach.warmest_c);
     bench.sweep(axis, ramp, 60.0);
     bench.heat(Heater::kOff);
     bench.sweep(axis, ramp, 60.0);
     list.add(
         "ramp_" + letter,
-        fmt::format("sweep O{} at rest, while the boost heaters warm the gyro towards 55 degC, "
-                    "and while it cools (field-on-ramp)",
-                    name),
+        fmt::format("sweep O{} at rest, while the boost heaters warm the gyro towards {:g} degC, "
+                    "and while it cools (field-on-ramp{})",
+                    name, state.reach.warmest_c, levels_told(state, " with ")),
         bench, {.field = true, .temperature = true, .together = true}, axis);
   }
 }
@@ -167,9 +193,10 @@ void add_cross_experiments(List& list, const BenchState& state) {
     BenchSchedule bench = warm(state, state.held_c);
     const bool shared = pair.azimuth_deg == 45.0;
     if (pair.azimuth_deg != 0.0) bench.turn(pair.azimuth_deg);
+    const double each_ut = std::min(200.0, state.reach.field_ut);
     const auto point = [&](double a, double b) {
-      bench.field(pair.axes[0], 200.0 * a);
-      bench.field(pair.axes[1], 200.0 * b);
+      bench.field(pair.axes[0], each_ut * a);
+      bench.field(pair.axes[1], each_ut * b);
       bench.wait(5.0);
       bench.record(kFieldAverage_s, kFieldAverage_s, std::string("coil_") + pair.axes + "/both");
     };
@@ -184,10 +211,10 @@ void add_cross_experiments(List& list, const BenchState& state) {
       }
     }
     list.add(std::string("together_") + pair.axes,
-             fmt::format("energise O{} and O{} together with 200 uT each at the four sign "
+             fmt::format("energise O{} and O{} together with {:g} uT each at the four sign "
                          "combinations, with zeros between ({}; two-axes does it for all pairs)",
                          static_cast<char>(pair.axes[0] - 'x' + 'X'),
-                         static_cast<char>(pair.axes[1] - 'x' + 'X'), pair.how),
+                         static_cast<char>(pair.axes[1] - 'x' + 'X'), each_ut, pair.how),
              bench, kField, 0, true);
   }
 }
@@ -196,7 +223,7 @@ void add_reversed_order(List& list, const BenchState& state) {
   BenchSchedule bench = warm(state, state.held_c);
   bench.turn(90.0);
   bench.record(kFieldAverage_s, kFieldAverage_s, "coil/baseline");
-  const auto levels = negated(standard_levels());
+  const auto levels = negated(sweep_levels(state.reach.field_ut, kFieldStep_ut));
   const auto moves = [&](char axis) { return state.moving_axes.find(axis) != std::string::npos; };
   if (moves('z')) bench.sweep('z', levels, kFieldAverage_s);
   bench.record(1800.0, kFieldAverage_s, "coil/baseline");
@@ -206,8 +233,10 @@ void add_reversed_order(List& list, const BenchState& state) {
     if (moves(axis)) bench.sweep(axis, levels, kFieldAverage_s);
   }
   list.add("reversed",
-           "repeat the run in reverse order: azimuth 90 first, the last axis first, levels from "
-           "-300 uT (coil-sweep with its steps turned round and levels_ut negated)",
+           fmt::format("repeat the run in reverse order: azimuth 90 first, the last axis first, "
+                       "levels from -{:g} uT (coil-sweep with its steps turned round and levels_ut "
+                       "negated)",
+                       state.reach.field_ut),
            bench, {.field = true, .azimuth = true});
 }
 
@@ -222,33 +251,42 @@ void add_plateaus(BenchSchedule& bench, std::span<const double> set_points_c, do
 }
 
 void add_thermal_experiments(List& list, const BenchState& state) {
+  const double warmest_c = state.reach.warmest_c;
+  const auto set_points = within(kSetPoints_c, warmest_c);
+  const bool standard = set_points.size() == kSetPoints_c.size();
+  const std::string told =
+      standard ? "" : fmt::format(" with set_points_c {}", fmt::join(set_points, ", "));
   {
     BenchSchedule bench(state.ambient_c);
-    add_plateaus(bench, kSetPoints_c, kTransient_s, 3);
-    list.add("thermostat_steps", "step the thermostat through its set points (thermostat-steps)",
+    add_plateaus(bench, set_points, kTransient_s, 3);
+    list.add("thermostat_steps",
+             fmt::format("step the thermostat through its set points (thermostat-steps{})", told),
              bench, kThermal);
   }
   {
     BenchSchedule bench = warm(state, state.held_c);
-    add_plateaus(bench, kSetPoints_c, kTransient_s, 3);
-    for (auto target = kSetPoints_c.rbegin() + 1; target != kSetPoints_c.rend(); ++target) {
+    add_plateaus(bench, set_points, kTransient_s, 3);
+    for (auto target = set_points.rbegin() + 1; target != set_points.rend(); ++target) {
       bench.cool_to(*target, kTransient_s, "thermostat/cooling");
       bench.heat(Heater::kNormal, *target);
       bench.settle(kTransient_s, "thermostat/cooling");
       bench.record(3.0 * kPlateauAverage_s, kPlateauAverage_s, "thermostat/cooling_plateau");
     }
     list.add("cooling_branch",
-             "add a cooling branch (thermostat-steps with cooling_c 50, 45, 40, 35, 31)", bench,
-             kThermal);
+             fmt::format("add a cooling branch (thermostat-steps{} cooling_c {})",
+                         standard ? " with" : told + " and",
+                         fmt::join(set_points.rbegin() + 1, set_points.rend(), ", ")),
+             bench, kThermal);
   }
   {
     BenchSchedule bench = warm(state, state.held_c);
     std::vector<double> grid;
-    for (double t = 31.0; t <= 55.0; t += 1.0) grid.push_back(t);
+    for (double t = 31.0; t <= warmest_c; t += 1.0) grid.push_back(t);
     add_plateaus(bench, grid, kTransient_s, 3);
     list.add("fine_grid",
-             "step the temperature by 1 degC (thermostat-steps with set_points_c 31, "
-             "32, 33 ... 55)",
+             fmt::format("step the temperature by 1 degC (thermostat-steps with set_points_c 31, "
+                         "32, 33 ... {:g})",
+                         grid.back()),
              bench, kThermal);
   }
   {
@@ -263,26 +301,30 @@ void add_thermal_experiments(List& list, const BenchState& state) {
   {
     BenchSchedule bench(state.ambient_c);
     for (int i = 0; i < 3; ++i) {
-      bench.heat(Heater::kBoost, 55.0);
+      bench.heat(Heater::kBoost, warmest_c);
       bench.record(480.0, kTransient_s, "thermostat/boost");
-      bench.heat(Heater::kNormal, 55.0);
+      bench.heat(Heater::kNormal, warmest_c);
       bench.record(480.0, kTransient_s, "thermostat/normal");
     }
-    list.add("boost_and_normal",
-             "heat in one go towards 55 degC with the boost heaters and the normal one by turns, "
-             "eight minutes each, three times (set_temperature boost and normal, wait 480 s in "
-             "windows of 60 s)",
-             bench, kThermal);
+    list.add(
+        "boost_and_normal",
+        fmt::format("heat in one go towards {:g} degC with the boost heaters and the normal one "
+                    "by turns, eight minutes each, three times (set_temperature boost and "
+                    "normal, wait 480 s in windows of 60 s)",
+                    warmest_c),
+        bench, kThermal);
   }
   {
     BenchSchedule bench(state.ambient_c);
-    for (const double target_c : {31.0, 38.0, 45.0, 52.0}) {
+    const auto targets = within(std::array{31.0, 38.0, 45.0, 52.0}, warmest_c);
+    for (const double target_c : targets) {
       bench.heat(Heater::kBoost, target_c);
       bench.settle(10.0, "thermostat/heating");
     }
     list.add("edges",
-             "record the edges of quick temperature steps in windows of 10 s "
-             "(thermostat-steps with set_points_c 31, 38, 45, 52 and transient_s 10)",
+             fmt::format("record the edges of quick temperature steps in windows of 10 s "
+                         "(thermostat-steps with set_points_c {} and transient_s 10)",
+                         fmt::join(targets, ", ")),
              bench, kThermal);
   }
   {
@@ -336,12 +378,25 @@ void add_experiments_at_rest(List& list, const BenchState& state) {
 
 }  // namespace
 
+BenchReach reach_of(const config::BenchConfig& bench) {
+  double field_ut = bench.limits.field_maximum.value;
+  for (const config::CoilConfig* coil : {&bench.coil_horizontal, &bench.coil_vertical}) {
+    field_ut = std::min(field_ut, coil->current_limit.value * coil->field_ut_per_a -
+                                      bench.limits.compensation_maximum.value);
+  }
+  const double steps = std::floor(std::max(field_ut, 0.0) / kFieldStep_ut);
+  return {std::min(BenchReach::kStandard_ut, steps * kFieldStep_ut),
+          std::min(BenchReach::kStandard_c, bench.limits.temperature_maximum.value)};
+}
+
 std::vector<Experiment> bench_experiments(const BenchState& state) {
   List list;
-  for (const char axis : {'x', 'y', 'z'}) add_field_experiments(list, state, axis);
-  add_cross_experiments(list, state);
-  add_reversed_order(list, state);
-  add_thermal_experiments(list, state);
+  if (state.reach.field_ut >= kFieldStep_ut) {
+    for (const char axis : {'x', 'y', 'z'}) add_field_experiments(list, state, axis);
+    add_cross_experiments(list, state);
+    add_reversed_order(list, state);
+  }
+  if (state.reach.warmest_c >= kLeastWarmest_c) add_thermal_experiments(list, state);
   add_experiments_at_rest(list, state);
   return std::move(list.experiments);
 }

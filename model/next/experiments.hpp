@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "config/bench.hpp"
 #include "model/next/bench_schedule.hpp"
 
 namespace fogbench::model {
@@ -23,14 +24,25 @@ struct Experiment {
   bool by_hand = false;  ///< no ready procedure does this and no more
 };
 
+/// What a bench can do, at most; by itself the standard procedures' fields and temperatures.
+struct BenchReach {
+  static constexpr double kStandard_ut = 300.0;
+  static constexpr double kStandard_c = 55.0;
+  double field_ut = kStandard_ut;  ///< along one axis, either sign; a multiple of 50
+  double warmest_c = kStandard_c;
+};
+/// Of a bench's limits, coil constants and supplies, the ambient field to be nulled allowed for.
+BenchReach reach_of(const config::BenchConfig& bench);
+
 /// Where the room and the thermostat stood in the measurement that is to be continued.
 struct BenchState {
   double ambient_c = 21.0;
   double held_c = 21.0;     ///< where the thermostat held it; as the room: heaters off
   std::string moving_axes;  ///< "xz": axes along which a field was varied
+  BenchReach reach;
 };
 
-/// In a fixed order. All of them, whatever the effects in question are.
+/// In a fixed order, whatever the effects in question are: all of them that the bench can do.
 std::vector<Experiment> bench_experiments(const BenchState& state);
 
 }  // namespace fogbench::model

@@ -24,7 +24,9 @@ std::vector<NextMeasurement> next_measurements(const NextMeasurementInput& given
   double& white = input.noise.angle_random_walk_deg_per_sqrt_h;
   white = std::max(white, kLeastNoise);
   const Recorded present = recorded_from(input.present);
-  std::vector<Experiment> experiments = bench_experiments(state_of(input.present));
+  BenchState state = state_of(input.present);
+  state.reach = input.reach;
+  std::vector<Experiment> experiments = bench_experiments(state);
   for (Experiment& e : experiments) e.record = as_recorded(e.record, input.present);
   std::vector<Experiment> with_present = experiments;
   with_present.push_back({kRepeat, "repeat the present run", present});

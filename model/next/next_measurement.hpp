@@ -11,6 +11,7 @@
 
 #include "config/model_file.hpp"
 #include "model/diagnose/library.hpp"
+#include "model/next/experiments.hpp"
 #include "model/noise/noise.hpp"
 #include "model/table/table.hpp"
 
@@ -42,6 +43,7 @@ struct NextMeasurementInput {
   /// the catalogue lacks are left out.
   const std::vector<std::vector<std::string>>& ambiguous;
   const std::vector<NotTestable>& not_testable;
+  BenchReach reach = {};  ///< of the bench that would do it
 };
 
 /// At most two lines for each ambiguous set and each rival, then one line for all effects that one

@@ -357,5 +357,43 @@ TEST(NextMeasurement, WorksWithoutTimesAndWithoutNoise) {
               Contains(Field(&NextMeasurement::tells_apart, ElementsAre("temperature_ripple"))));
 }
 
+TEST(BenchExperiments, StayWithinWhatTheBenchReaches) {
+  BenchState state;
+  state.moving_axes = "xyz";
+  state.reach = {.field_ut = 200.0, .warmest_c = 48.0};
+  const auto experiments = bench_experiments(state);
+  EXPECT_GT(experiments.size(), 30U);
+  for (const Experiment& e : experiments) {
+    const Table& table = e.record.table;
+    for (const char* axis : {"field_x_ut", "field_y_ut", "field_z_ut"}) {
+      if (!table.has(axis)) continue;
+      for (const double field : table.column(axis)) EXPECT_LE(std::abs(field), 200.0) << e.key;
+    }
+    for (const double t : table.column("temperature_c")) EXPECT_LE(t, 48.5) << e.key;
+    for (const char* beyond :
+         {"300 uT", "levels_ut 300", "levels_ut 0, 50, 100, 50", "55 degC", "50, 55", " 52"}) {
+      EXPECT_EQ(e.action.find(beyond), std::string::npos) << e.action;
+    }
+  }
+  state.reach = {.field_ut = 0.0, .warmest_c = 40.0};
+  for (const Experiment& e : bench_experiments(state)) {
+    EXPECT_FALSE(e.about.field || e.about.temperature) << e.action;
+  }
+}
+
+TEST(BenchExperiments, TakeTheReachFromLimitsAndSupplies) {
+  config::BenchConfig bench;
+  EXPECT_EQ(reach_of(bench).field_ut, 300.0) << "4 A and 89.9 uT/A, 55 uT to be nulled";
+  EXPECT_EQ(reach_of(bench).warmest_c, 55.0);
+  bench.limits.field_maximum = config::Microtesla{220.0};
+  bench.limits.temperature_maximum = config::Celsius{50.0};
+  EXPECT_EQ(reach_of(bench).field_ut, 200.0);
+  EXPECT_EQ(reach_of(bench).warmest_c, 50.0);
+  bench.coil_vertical.current_limit = config::Ampere{2.0};
+  EXPECT_EQ(reach_of(bench).field_ut, 100.0);
+  bench.coil_vertical.current_limit = config::Ampere{0.5};
+  EXPECT_EQ(reach_of(bench).field_ut, 0.0);
+}
+
 }  // namespace
 }  // namespace fogbench::model
