@@ -15,16 +15,6 @@ using Eigen::Index;
 
 constexpr const char* kRate = "temperature_rate_c_per_h";
 
-/// The windows follow each other without a gap.
-bool adjoin(const Signals& signals, Index a, Index b) {
-  constexpr double kMostGap = 0.1;  // of a window
-  const auto time = signals.signal("time_s");
-  const auto duration = signals.signal("duration_s");
-  const double between = time[b] - time[a] - 0.5 * (duration[a] + duration[b]);
-  const double shorter = std::min(duration[a], duration[b]);
-  return shorter > 0.0 && std::abs(between) < kMostGap * shorter;
-}
-
 /// Rate of each window from the temperatures at its ends, where windows follow each other without
 /// a gap; elsewhere as the table states it. A boundary's temperature is the middle of what the two
 /// windows make of it. At kinks this is closer to the mean rate than a least-squares slope.
@@ -41,7 +31,7 @@ std::vector<double> rate_between_ends(const Signals& signals) {
   for (const Signals::RunRange& run : signals.runs()) {
     for (std::size_t i = run.begin + 1; i + 1 < run.end; ++i) {
       const auto row = static_cast<Index>(i);
-      if (!adjoin(signals, row - 1, row) || !adjoin(signals, row, row + 1)) continue;
+      if (!signals.adjoin(row - 1) || !signals.adjoin(row)) continue;
       out[i] = (boundary(row, row + 1) - boundary(row - 1, row)) * config::kSecondsPerHour /
                duration[row];
     }

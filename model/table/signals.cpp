@@ -245,16 +245,20 @@ Signals::Values Signals::slope_per_hour(std::string_view name, double half_windo
   return rate;
 }
 
+bool Signals::adjoin(Eigen::Index row) const {
+  constexpr double kMostGap = 0.1;  // of a window
+  const View time = whole("time_s");
+  const View duration = whole("duration_s");
+  const double gap_s = time[row + 1] - time[row] - (duration[row] + duration[row + 1]) / 2.0;
+  const double shorter = std::min(duration[row], duration[row + 1]);
+  return shorter > 0.0 && std::abs(gap_s) < kMostGap * shorter;
+}
+
 Signals::Values Signals::acceleration_of_windows() const {
-  constexpr double kMostGap = 0.1;  // of a window, between windows that follow each other
   const View rate = whole("temperature_rate_c_per_h");
   const View temperature = whole("temperature_c");
   const View time = whole("time_s");
   const View duration = whole("duration_s");
-  const auto adjoin = [&](Eigen::Index a) {
-    const double gap_s = time[a + 1] - time[a] - (duration[a] + duration[a + 1]) / 2.0;
-    return std::abs(gap_s) < kMostGap * std::min(duration[a], duration[a + 1]);
-  };
   const auto rate_after = [&](Eigen::Index a) {
     const double hours = (time[a + 1] - time[a]) / config::kSecondsPerHour;
     return 2.0 * (temperature[a + 1] - temperature[a]) / hours - (rate[a] + rate[a + 1]) / 2.0;

@@ -56,6 +56,10 @@ class Signals {
   /// Rows [begin, end) of these signals, for effects that need no history.
   Signals block(std::size_t begin, std::size_t end) const;
 
+  /// The windows of `row` and of the next one follow each other without a gap; rows as runs() counts
+  /// them. Precondition: time_s and duration_s are available.
+  bool adjoin(Eigen::Index row) const;
+
   /// A column of the table, or one derived for it. Precondition: available(name).
   View signal(std::string_view name) const;
   /// In the table with at least one number, or derivable.
