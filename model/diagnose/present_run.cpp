@@ -1,12 +1,11 @@
 #include "model/diagnose/present_run.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "model/table/moving_signals.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -98,12 +97,12 @@ BenchState state_of(const Table& present) {
     const double mean = mean_of(values, state.ambient_c);
     if (*high - *low < kHeld_c && mean > state.ambient_c + kHeld_c) state.held_c = mean;
   }
-  for (const char axis : {'x', 'y', 'z'}) {
-    const std::string name = fmt::format("field_{}_ut", axis);
-    if (!present.has(name)) continue;
-    const auto values = present.column(name);
+  for (const auto& [name, axis] : kFieldSignals) {
+    const std::string column(name);
+    if (!present.has(column)) continue;
+    const auto values = present.column(column);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    if (*high - *low > least_excitation(name)) state.moving_axes += axis;
+    if (*high - *low > least_excitation(column)) state.moving_axes += axis;
   }
   return state;
 }

@@ -11,6 +11,7 @@
 #include "model/diagnose/excitation.hpp"
 #include "model/diagnose/present_run.hpp"
 #include "model/effects/catalogue.hpp"
+#include "model/table/signals.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -200,8 +201,12 @@ bool SetChoice::concerns(const Experiment& experiment) const {
   Experiment::About set;
   for (const Effect* effect : effects_) {
     for (const std::string_view signal : effect->info().signals) {
-      if (signal.starts_with("field_")) axes += signal[6];
-      set.field |= signal.starts_with("field_") || signal == "coil_heat";
+      for (const FieldSignal& field : kFieldSignals) {
+        if (signal != field.name) continue;
+        axes += field.axis;
+        set.field = true;
+      }
+      set.field |= signal == "coil_heat";
       set.temperature |= signal.starts_with("temperature_") || signal == "heater_w";
       set.azimuth |= signal == "azimuth_deg";
     }

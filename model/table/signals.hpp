@@ -18,6 +18,7 @@
 //   run_index                 0 for the first run by name ("2" before "10"), 1 for the next
 
 #include <Eigen/Core>
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -31,6 +32,14 @@ namespace fogbench::model {
 
 /// Fields enter every effect in units of 100 uT.
 inline constexpr double kFieldUnitUt = 100.0;
+
+/// The measured field along each axis of the gyro.
+struct FieldSignal {
+  std::string_view name;
+  char axis;
+};
+inline constexpr std::array<FieldSignal, 3> kFieldSignals = {
+    {{"field_x_ut", 'x'}, {"field_y_ut", 'y'}, {"field_z_ut", 'z'}}};
 
 struct EffectInfo;
 
@@ -56,8 +65,8 @@ class Signals {
   /// Rows [begin, end) of these signals, for effects that need no history.
   Signals block(std::size_t begin, std::size_t end) const;
 
-  /// The windows of `row` and of the next one follow each other without a gap; rows as runs() counts
-  /// them. Precondition: time_s and duration_s are available.
+  /// The windows of `row` and of the next one follow each other without a gap; rows as runs()
+  /// counts them. Precondition: time_s and duration_s are available.
   bool adjoin(Eigen::Index row) const;
 
   /// A column of the table, or one derived for it. Precondition: available(name).
