@@ -133,7 +133,7 @@ TEST_F(ServiceTest, CompletionOffersReadyFilesAndChoices) {
   const std::vector<std::pair<std::string, Words>> expected{
       {"pl", {"plan"}},
       {"run coil", {"coil-sweep"}},
-      {"dry-run coil-sweep --bench simulated-", {"simulated-1khz"}},
+      {"dry-run coil-sweep --bench simulated-1", {"simulated-1khz"}},
       {"device ''", {"check", "probe"}},
       {"answer ''", {"no", "yes"}},
       {"fit 7 -o fit", {}},  // a file's name is bash's own
