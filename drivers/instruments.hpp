@@ -146,6 +146,14 @@ struct StreamStatistics {
   std::uint64_t frames_repeated = 0;
   std::uint64_t frames_missing = 0;  ///< by sequence number (bad and invalid ones included)
   std::uint64_t bytes_skipped = 0;   ///< thrown away while looking for a header
+
+  /// What has come on top of `before`, an earlier state of the same line.
+  StreamStatistics operator-(const StreamStatistics& before) const {
+    return {
+        frames_good - before.frames_good,       frames_bad_checksum - before.frames_bad_checksum,
+        frames_invalid - before.frames_invalid, frames_repeated - before.frames_repeated,
+        frames_missing - before.frames_missing, bytes_skipped - before.bytes_skipped};
+  }
 };
 
 /// Frames a second as they come, lost ones counted, by the clock.

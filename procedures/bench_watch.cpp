@@ -47,6 +47,8 @@ Status BenchWatch::start() {
     clock_.sleep_for(std::chrono::milliseconds{10});
   }
   power_on_ = bench_.gyro->time_of(0);
+  stream_before_ = bench_.gyro->statistics();
+  stream_before_.frames_good -= frames_.index.size();  // these are this run's
   return record_frames();
 }
 

@@ -59,7 +59,8 @@ class BenchWatch {
         bench_(bench),
         clock_(clock),
         recorder_(recorder),
-        interrupted_(std::move(interrupted)) {}
+        interrupted_(std::move(interrupted)),
+        stream_before_(bench.gyro->statistics()) {}
 
   /// Waits for the stream's first frame, which is the zero of time: the gyro's power-on as far as
   /// the bench can tell. kTimeout when none comes.
@@ -78,6 +79,9 @@ class BenchWatch {
   /// Of the last kRecentS seconds, the last tick's included.
   const std::deque<MonitorRow>& recent_rows() const { return recent_; }
 
+  /// What happened on the gyro's line since start(): what was lost before, while nobody measured,
+  /// is no loss of this run.
+  drivers::StreamStatistics stream() const { return bench_.gyro->statistics() - stream_before_; }
   /// The first frame that has not come yet.
   std::int64_t next_frame() const { return next_frame_; }
   Instant power_on() const { return power_on_; }
@@ -125,6 +129,7 @@ class BenchWatch {
   drivers::Clock& clock_;
   Recorder& recorder_;
   std::function<bool()> interrupted_;
+  drivers::StreamStatistics stream_before_;
   drivers::GyroBlock frames_;
   MonitorRow row_;
   std::deque<MonitorRow> recent_;

@@ -158,7 +158,7 @@ Result<RunEnd> RunEngine::Run::finish(const Status& outcome) {
     end.outcome = RunOutcome::kFailed;
     end.reason += "; " + safe.error().message;
   }
-  end.stream = engine_.bench_.gyro->statistics();
+  end.stream = watch_.stream();
   end.ended_at = drivers::utc_text(engine_.clock_.wall_now());
   enter(
       end.outcome == RunOutcome::kCompleted

@@ -29,6 +29,22 @@ TEST(RunEngine, RunsEveryKindOfStepAndEndsSafe) {
             rig.plant.clock.now().time_since_epoch() / std::chrono::milliseconds(10));
 }
 
+TEST(RunEngine, WhatWasLostBeforeARunIsNoLossOfIt) {
+  Rig rig;
+  const auto first = rig.summary_of({average(3.0)});
+  EXPECT_EQ(first.end.stream.frames_missing, 0U);
+  // Nobody measures for a minute, and half of its frames are lost.
+  const auto idle = static_cast<std::int64_t>(
+      100.0 * drivers::to_seconds(rig.plant.clock.now().time_since_epoch()));
+  rig.plant.lost = [idle](std::int64_t i) { return i >= idle && i < idle + 3000; };
+  rig.plant.clock.sleep_for(std::chrono::seconds{60});
+  const auto frames = rig.log.frames;
+  const auto second = rig.summary_of({average(3.0)});
+  EXPECT_EQ(second.end.outcome, RunOutcome::kCompleted) << second.end.reason;
+  EXPECT_EQ(second.end.stream.frames_missing, 0U);
+  EXPECT_EQ(second.end.stream.frames_good, static_cast<std::uint64_t>(rig.log.frames - frames));
+}
+
 TEST(RunEngine, FillsEveryFieldOfAPoint) {
   Rig rig;
   rig.plant.rate = [](std::int64_t i) { return i % 2 == 0 ? 12.0 : 13.0; };
