@@ -41,7 +41,11 @@ std::variant<std::uint64_t, RpcError> JobQueue::add(Order order, PlannedProcedur
 }
 
 void JobQueue::restore(Order order, PlannedProcedure procedure, const Person& by) {
-  jobs_.push_back({++jobs_ever_, std::move(order), std::move(procedure), by});
+  // A job keeps its number; one that another job has by now gets the next.
+  const bool is_free = order.job != 0 && find(order.job) == jobs_.end();
+  const std::uint64_t number = is_free ? order.job : jobs_ever_ + 1;
+  jobs_ever_ = std::max(jobs_ever_, number);
+  jobs_.push_back({number, std::move(order), std::move(procedure), by});
   started_anew_ = true;
   ++changes_;
 }
@@ -118,6 +122,7 @@ Job JobQueue::take() {
   Job job = std::move(jobs_.front());
   jobs_.pop_front();
   starting_.emplace(job.order, job.by);
+  starting_->first.job = job.job;
   running_ = true;
   if (!job.procedure.gyro.empty()) gyro_ = job.procedure.gyro;
   ++changes_;
@@ -140,7 +145,10 @@ void JobQueue::ended(RunOutcome outcome, bool safe_state_reached) {
 JobQueue::Waiting JobQueue::waiting() const {
   Waiting waiting{changes_, asked_, {}};
   if (starting_) waiting.orders.push_back(*starting_);
-  for (const Job& job : jobs_) waiting.orders.emplace_back(job.order, job.by);
+  for (const Job& job : jobs_) {
+    waiting.orders.emplace_back(job.order, job.by);
+    waiting.orders.back().first.job = job.job;
+  }
   return waiting;
 }
 

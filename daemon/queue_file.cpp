@@ -29,6 +29,10 @@ std::optional<Kept> kept_from(const nlohmann::json& entry) {
   }
   Kept kept;
   kept.by = {entry["by"].get<std::string>(), entry["uid"].get<std::uint32_t>()};
+  if (const auto job = entry.find("job"); job != entry.end()) {
+    if (!job->is_number_unsigned()) return std::nullopt;
+    kept.order.job = job->get<std::uint64_t>();
+  }
   if (const auto run = entry.find("takes_up"); run != entry.end()) {
     if (!run->is_number_unsigned()) return std::nullopt;
     kept.order.takes_up = run->get<std::int64_t>();
@@ -88,8 +92,8 @@ Status QueueFile::load(RunDesk& desk, const Setup& setup, const std::filesystem:
     const auto kept = kept_from(jobs[i]);
     if (!kept) {
       return config::bad_input(
-          fmt::format("{}: job {}: expected procedure, set, by, uid and perhaps gyro and "
-                      "keep_going of a run that waits",
+          fmt::format("{}: job {}: expected procedure, set, by, uid and perhaps job, gyro "
+                      "and keep_going of a run that waits",
                       path_.string(), i + 1));
     }
     auto planned = plan_order(kept->order, setup, store, credentials_of_user(kept->by.uid));
@@ -125,6 +129,7 @@ Status QueueFile::write(const JobQueue::Waiting& waiting) const {
   ordered_json list = ordered_json::array();
   for (const auto& [order, by] : waiting.orders) {
     ordered_json entry;
+    if (order.job != 0) entry["job"] = order.job;
     if (order.takes_up != 0) {
       entry["takes_up"] = order.takes_up;
     } else {

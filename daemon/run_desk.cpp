@@ -361,6 +361,9 @@ void RunDesk::run_ended(const Result<procedures::RunSummary>& summary) {
   ++view_.totals.runs[ended.outcome];
   view_.run.reset();
   view_.question.reset();
+  // Nobody reads the bench any more: a current beside "idle" would be none that flows.
+  view_.values.reset();
+  view_.known.clear();
   view_.last_run = ended;
   ended_.push_back(std::move(ended));
   if (ended_.size() > kMostEndedRuns) ended_.pop_front();

@@ -64,6 +64,21 @@ TEST_F(QueueFileTest, WhatWaitsOutlivesTheDaemonAndIsHeld) {
   EXPECT_THAT(next.view().held_because, testing::StartsWith("the daemon was started anew"));
 }
 
+TEST_F(QueueFileTest, EachJobKeepsItsNumber) {
+  RunDesk desk;
+  for (int i = 0; i < 3; ++i) enqueue(desk, ready("static-record"), {});
+  EXPECT_FALSE(desk.remove(1, {"alice", geteuid()}));
+  EXPECT_FALSE(desk.move(3, 1));
+  open()->update(desk);
+  RunDesk next;
+  ASSERT_TRUE(load(next));
+  ASSERT_EQ(next.queue().size(), 2U);
+  EXPECT_EQ(next.queue()[0].job, 3U);
+  EXPECT_EQ(next.queue()[1].job, 2U);
+  enqueue(next, ready("static-record"), {});
+  EXPECT_EQ(next.queue()[2].job, 4U) << "no number is given twice";
+}
+
 TEST_F(QueueFileTest, EachJobKeepsItsGyroAndOneWithoutTakesTheNewDaemons) {
   RunDesk desk;
   enqueue(desk, Order{ready("static-record"), {}, 0, "FOG-42"});
@@ -193,7 +208,7 @@ TEST_F(QueueFileTest, AFileThatIsNoneOfOursIsRefusedInOneLine) {
         std::pair{R"([{"procedure": "p", "set": {}, "keep_going": 1, "by": "a", "uid": 1}])",
                   "keep_going"},
         std::pair{R"([{"procedure": "p", "set": {}, "gyro": "a\nb", "by": "a", "uid": 1}])",
-                  "perhaps gyro"},
+                  "perhaps job, gyro"},
         std::pair{R"([{"procedure": "p", "set": {}, "gyro": 7, "by": "a", "uid": 1}])", "job 1"},
         std::pair{R"([{"takes_up": -1, "by": "a", "uid": 1}])", "job 1"}}) {
     folder_.file("store.db.queue", text);
