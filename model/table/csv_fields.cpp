@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -62,7 +63,12 @@ bool take_field(std::string_view& line, std::string& field, bool& last) {
 }
 
 std::optional<double> to_number(std::string_view text) {
-  if (text.empty()) return kMissing;
+  constexpr std::array<std::string_view, 6> kMissingWords = {"-",    "NA",  "N/A",
+                                                             "#N/A", "n/a", "null"};
+  if (text.empty() ||
+      std::find(kMissingWords.begin(), kMissingWords.end(), text) != kMissingWords.end()) {
+    return kMissing;
+  }
   if (text.front() == '+' && !text.substr(1).starts_with('-')) text.remove_prefix(1);
   double value = 0.0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);

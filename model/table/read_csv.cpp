@@ -10,12 +10,15 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <span>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
 #include "config/channels.hpp"
 #include "model/table/condense.hpp"
 #include "model/table/csv_fields.hpp"
+#include "model/table/dialect.hpp"
 #include "model/table/line_reader.hpp"
 
 namespace fogbench::model {
@@ -95,12 +98,15 @@ class CsvReader {
       return bad(fmt::format("{}: found a directory, expected a CSV file", file_.string()));
     }
     size_ = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0));
+    if (Status known = recognise_dialect(); !known) return known.error();
     if (Status header = read_header(); !header) return header.error();
     if (Status rows = read_rows(); !rows) return rows.error();
     return build();
   }
 
  private:
+  static constexpr std::size_t kLinesLookedAt = 64;
+
   enum class Kind { kNumber, kOther, kRun, kSegment, kIgnored };
   struct Column {
     std::string name;
@@ -114,8 +120,22 @@ class CsvReader {
     return bad(fmt::format("{}:{}: {}", file_.string(), line_number_, what));
   }
 
-  /// False at the end of the file.
+  /// The next line with commas between its fields; false at the end of the file.
   Result<bool> next_line(std::string_view& line) {
+    if (next_early_ < early_.size()) {
+      line = early_[next_early_++];
+      ++line_number_;
+    } else if (const Result<bool> more = next_line_of_file(line); !more || !*more) {
+      return more;
+    }
+    if (dialect_.plain() || line.empty() || is_comment(line)) return true;
+    plain_ = dialect_.plain_line(line);
+    line = plain_;
+    return true;
+  }
+
+  /// As the file has it.
+  Result<bool> next_line_of_file(std::string_view& line) {
     const LineReader::Outcome outcome = lines_.next(line);
     if (outcome == LineReader::Outcome::kEnd) return false;
     ++line_number_;
@@ -128,6 +148,29 @@ class CsvReader {
     return true;
   }
 
+  /// Looks at the file's first lines, which are read again.
+  Status recognise_dialect() {
+    std::vector<std::string> told;  // the names and some rows
+    std::string_view line;
+    while (told.size() < kLinesLookedAt) {
+      const Result<bool> more = next_line_of_file(line);
+      if (!more) break;  // said when it is its turn
+      if (!*more) break;
+      early_.emplace_back(line);
+      if (line_number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+      if (!line.empty() && !is_comment(line)) told.emplace_back(line);
+    }
+    const std::size_t seen = std::exchange(line_number_, 0);
+    if (told.empty()) return {};
+    const auto dialect = recognise(told.front(), std::span(told).subspan(1));
+    if (!dialect) {
+      line_number_ = seen;
+      return bad(fmt::format("{}: {}", file_.string(), dialect.error().message));
+    }
+    dialect_ = *dialect;
+    return {};
+  }
+
   Status read_header() {
     std::string_view line;
     do {
@@ -138,14 +181,10 @@ class CsvReader {
                                file_.string()));
       }
       if (line_number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-    } while (line.empty() || line.front() == '#');
+    } while (line.empty() || is_comment(line));
     if (has_control_characters(line)) {
       return bad_line(
           fmt::format("found {}, expected column names (is this a text file?)", shown(line)));
-    }
-    if (line.find(',') == std::string_view::npos &&
-        line.find_first_of(";\t") != std::string_view::npos) {
-      return bad_line(fmt::format("found {}, expected names separated by commas", shown(line)));
     }
     std::string name;
     for (bool last = false; !last;) {
@@ -200,7 +239,7 @@ class CsvReader {
       Result<bool> more = next_line(line);
       if (!more) return more.error();
       if (!*more) break;
-      if (line.empty()) continue;
+      if (line.empty() || is_comment(line)) continue;
       if (Status row = read_row(line); !row) return row;
       if (++rows_ == 1000) reserve((lines_.consumed() - header_bytes) / rows_);
       if (++stored_ >= most_rows_) average_neighbours();
@@ -344,6 +383,7 @@ class CsvReader {
       if (!column.dropped.empty()) table.set_dropped(column.name, column.dropped);
     }
     table.set_rows_averaged(rows_averaged_);
+    if (!dialect_.plain()) table.set_written(dialect_.says());
     return table;
   }
 
@@ -358,6 +398,10 @@ class CsvReader {
   std::vector<Column> columns_;
   TextBuilder run_, segment_;
   std::string field_;
+  Dialect dialect_;
+  std::vector<std::string> early_;  ///< lines that were looked at before their turn
+  std::size_t next_early_ = 0;
+  std::string plain_;
 };
 
 }  // namespace

@@ -14,12 +14,13 @@ namespace fogbench::model {
 
 inline constexpr std::size_t kEveryRow = std::numeric_limits<std::size_t>::max();
 
-/// Reads CSV: comma-separated, first line names (after any lines that begin with '#'), '.'
-/// decimals, empty or NaN missing, lines at most 1 MiB, empty lines and columns without a name
-/// skipped. `renames` maps a wanted name to the file's ("rate_deg_per_h" -> "omega"); the column
-/// that had the wanted name, if any, is dropped.
-/// Text in a column of numbers is kBadInput with file, line and column; a column that is not of the
-/// measurement table is dropped instead.
+/// Reads a table of text: first line names, lines at most 1 MiB; comments ('#', '%', "//"), empty
+/// lines and columns without a name skipped. Commas between fields and '.' decimals, or what
+/// dialect.hpp recognises on the first lines, which Table::written() says. Missing is nothing, NaN,
+/// NA, N/A, #N/A, null or '-'. `renames` maps a wanted name to the file's ("rate_deg_per_h" ->
+/// "omega"); the column that had the wanted name, if any, is dropped. Text in a column of numbers
+/// is kBadInput with file, line and column; a column that is not of the measurement table is
+/// dropped instead.
 ///
 /// Of a file with more than `most_rows` rows, neighbours of one run and segment are averaged while
 /// it is read, so that memory is bounded by `most_rows`: a duration becomes the sum, a standard

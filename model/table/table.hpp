@@ -42,6 +42,9 @@ class Table {
   void set_run(TextColumn run);
   void set_segment(TextColumn segment);
   /// Remembers why a column of the source is not in the table.
+  /// How the file writes its table, where that is not the plain way; empty: it is.
+  const std::string& written() const { return written_; }
+  void set_written(std::string how) { written_ = std::move(how); }
   void set_dropped(std::string name, std::string because);
 
   /// How many rows of its source a row stands for at most; 1 unless it was read with a limit.
@@ -58,6 +61,7 @@ class Table {
 
   std::size_t rows_ = 0, rows_averaged_ = 1;
   std::map<std::string, std::vector<double>, std::less<>> columns_;
+  std::string written_;
   std::map<std::string, std::string, std::less<>> dropped_;
   TextColumn run_, segment_;
 };
