@@ -12,6 +12,8 @@
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
+#include "config/column_unit.hpp"
+#include "config/units.hpp"
 #include "record/export.hpp"
 #include "record/run_log_reader.hpp"
 
@@ -27,19 +29,55 @@ std::optional<std::int64_t> run_number(std::string_view text) {
   return run;
 }
 
-Result<Renames> parse_renames(const std::vector<std::string>& columns) {
-  Renames renames;
-  for (const std::string& column : columns) {
-    const std::size_t equals = column.find('=');
-    if (equals == 0 || equals == std::string::npos || equals + 1 == column.size()) {
-      return Error{
-          ErrorCode::kUsage,
-          fmt::format("--column {}: wanted=name was expected, such as rate_deg_per_h=omega",
-                      column)};
+Result<Renames> parse_pairs(const std::vector<std::string>& given, const char* option,
+                            const char* expected) {
+  Renames pairs;
+  for (const std::string& pair : given) {
+    const std::size_t equals = pair.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == pair.size()) {
+      return Error{ErrorCode::kUsage,
+                   fmt::format("{} {}: {} was expected", option, pair, expected)};
     }
-    renames[column.substr(0, equals)] = column.substr(equals + 1);
+    pairs[pair.substr(0, equals)] = pair.substr(equals + 1);
   }
-  return renames;
+  return pairs;
+}
+
+/// The unit that the column was measured in, by what was said of it or else by its name; null: it
+/// is not known.
+Result<const config::StatedUnit*> unit_of_source(const std::string& column, const Renames& units) {
+  const auto said = units.find(column);
+  if (said == units.end()) return config::unit_in_name(column);
+  if (const config::StatedUnit* const unit = config::find_unit(said->second)) return unit;
+  return Error{ErrorCode::kUsage,
+               fmt::format("--unit {}: found the unit \"{}\", expected one of {}", column,
+                           said->second, config::known_units())};
+}
+
+/// A column that was taken from one of another unit gets the house's numbers; said on stderr.
+Status take_to_house_unit(const std::string& wanted, const std::string& from, const Renames& units,
+                          model::Table& table) {
+  const auto unit = unit_of_source(from, units);
+  if (!unit) return unit.error();
+  const config::StatedUnit* const target = config::find_unit(config::unit_of(wanted));
+  if (*unit == nullptr || target == nullptr) return {};
+  const config::StatedUnit& source = **unit;
+  if (source.dimension != target->dimension) {
+    // The end of a name may mean something else; what was said or stands in brackets does not.
+    const bool stated = units.contains(from) || from.ends_with(']') || from.ends_with(')');
+    if (!stated) return {};
+    return Error{ErrorCode::kBadInput, fmt::format("column {}: is in {}, expected {} for {}", from,
+                                                   source.name, target->name, wanted)};
+  }
+  if (source.factor == target->factor && source.offset == target->offset) return {};
+  const auto stated = table.column(wanted);
+  std::vector<double> values(stated.begin(), stated.end());
+  for (double& value : values) {
+    value = (value * source.factor + source.offset - target->offset) / target->factor;
+  }
+  table.set_column(wanted, std::move(values));
+  print_note(fmt::format("{}: taken from {} in {} to {}", wanted, from, source.name, target->name));
+  return {};
 }
 
 Result<model::Table> load_run(const std::string& store, std::int64_t run, const Renames& renames,
@@ -68,11 +106,30 @@ Result<model::Table> load_run(const std::string& store, std::int64_t run, const 
 
 /// "7", "STORE.db#7" or a CSV file.
 Result<model::Table> load_one(const std::string& data, const DataOptions& options,
-                              const Renames& renames, std::size_t most_rows) {
-  if (const auto stored = run_in_store(data, options)) {
-    return load_run(stored->store, stored->run, renames, options.unfinished);
+                              const Renames& renames, const Renames& units, std::size_t most_rows) {
+  const auto stored = run_in_store(data, options);
+  auto table = stored ? load_run(stored->store, stored->run, renames, options.unfinished)
+                      : model::read_csv(data, renames, most_rows);
+  if (!table) return table;
+  if (!table->written().empty()) print_note(data + ": read as " + table->written());
+  for (const auto& [wanted, from] : renames) {
+    const Status converted = take_to_house_unit(wanted, from, units, *table);
+    if (!converted) return converted.error();
   }
-  return model::read_csv(data, renames, most_rows);
+  for (const auto& said : units) {
+    const std::string& column = said.first;
+    const bool is_renamed = std::any_of(renames.begin(), renames.end(), [&](const auto& rename) {
+      return rename.second == column;
+    });
+    if (is_renamed) continue;
+    if (!table->has(column)) {
+      return Error{ErrorCode::kBadInput,
+                   fmt::format("--unit {}: {} has no such column", column, data)};
+    }
+    const Status converted = take_to_house_unit(column, column, units, *table);
+    if (!converted) return converted.error();
+  }
+  return table;
 }
 
 void name_runs_after(const std::string& data, model::Table& table) {
@@ -103,6 +160,11 @@ void add_data_options(CLI::App& command, DataOptions& options, DataCount count) 
       .add_option("--column", options.columns,
                   "wanted=name: take this column from one of another name")
       ->allow_extra_args(false);
+  command
+      .add_option("--unit", options.units,
+                  "name=unit: what this column of the file is in, such as gyro=deg/s; it is taken "
+                  "to the unit that the wanted name ends in")
+      ->allow_extra_args(false);
   command.add_option("--segment", options.segment,
                      "Only rows whose segment matches, such as 'coil_z/*'");
   command.add_flag("--unfinished", options.unfinished,
@@ -122,6 +184,7 @@ std::string data_arguments(const DataOptions& options) {
   std::string out;
   for (const std::string& data : options.data) out += " " + shell_word(data);
   for (const std::string& column : options.columns) out += " --column " + shell_word(column);
+  for (const std::string& unit : options.units) out += " --unit " + shell_word(unit);
   if (!options.segment.empty()) out += " --segment " + shell_word(options.segment);
   if (options.unfinished) out += " --unfinished";
   out += store_argument(options.store);
@@ -137,11 +200,14 @@ std::string command_with_adequate(const DataOptions& options, const std::string&
 }
 
 Result<model::Table> load_table(const DataOptions& options, std::size_t most_rows) {
-  const auto renames = parse_renames(options.columns);
+  const auto renames =
+      parse_pairs(options.columns, "--column", "wanted=name, such as rate_deg_per_h=omega,");
   if (!renames) return renames.error();
+  const auto units = parse_pairs(options.units, "--unit", "name=unit, such as gyro=deg/s,");
+  if (!units) return units.error();
   std::optional<model::Table> all;
   for (const std::string& data : options.data) {
-    auto table = load_one(data, options, *renames, most_rows);
+    auto table = load_one(data, options, *renames, *units, most_rows);
     if (!table) return table.error();
     if (options.data.size() > 1) name_runs_after(data, *table);
     if (all) {

@@ -15,6 +15,7 @@ namespace fogbench::cli {
 struct DataOptions {
   std::vector<std::string> data;     ///< each "7", "STORE.db#7" or "file.csv"
   std::vector<std::string> columns;  ///< "wanted=name"
+  std::vector<std::string> units;    ///< "name=unit", of columns whose names do not say it
   std::string segment;               ///< glob; empty: every row
   std::string store;                 ///< for bare run numbers; empty: the default store
   bool unfinished = false;           ///< also runs that were not completed

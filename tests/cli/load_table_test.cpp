@@ -60,6 +60,43 @@ TEST_F(LoadTableTest, KeepsOnlyTheSegmentsThatMatch) {
                  "the segments are coil_x/up");
 }
 
+TEST_F(LoadTableTest, ARenamedColumnIsTakenToTheUnitOfItsNewName) {
+  const std::string csv = folder_
+                              .file("units.csv",
+                                    "omega_deg_s,gyro [rad/s],T (K),B_nT,t_min,plain\n"
+                                    "0.001,1e-6,300.15,48000,2,0.5\n")
+                              .string();
+  const auto value = [&](const std::string& column, const std::vector<std::string>& units = {}) {
+    const auto table = load_table({.data = {csv}, .columns = {column}, .units = units});
+    EXPECT_TRUE(table) << table.error().message;
+    return table ? table->column(column.substr(0, column.find('=')))[0] : 0.0;
+  };
+  EXPECT_NEAR(value("rate_deg_per_h=omega_deg_s"), 3.6, 1e-12);
+  EXPECT_NEAR(value("rate_deg_per_h=gyro [rad/s]"), 0.206264806, 1e-8);
+  EXPECT_NEAR(value("temperature_c=T (K)"), 27.0, 1e-9);
+  EXPECT_NEAR(value("field_x_ut=B_nT"), 48.0, 1e-12);
+  EXPECT_NEAR(value("time_s=t_min"), 120.0, 1e-12);
+  EXPECT_EQ(value("rate_deg_per_h=plain"), 0.5) << "nobody knows its unit";
+  EXPECT_NEAR(value("rate_deg_per_h=plain", {"plain=deg/s"}), 1800.0, 1e-9);
+  const auto in_place = load_table({.data = {csv}, .units = {"plain=mA"}});
+  ASSERT_TRUE(in_place) << in_place.error().message;
+  EXPECT_EQ(in_place->column("plain")[0], 0.5) << "its name ends in no unit to take it to";
+}
+
+TEST_F(LoadTableTest, RefusesAUnitOfAnotherKindAndOneThatNobodyKnows) {
+  const std::string csv =
+      folder_.file("units.csv", "gyro [K],odd [furlong],gyro_a\n1,2,3\n").string();
+  expect_refused({.data = {csv}, .columns = {"rate_deg_per_h=gyro [K]"}}, ErrorCode::kBadInput,
+                 "column gyro [K]: is in K, expected deg/h for rate_deg_per_h");
+  expect_refused({.data = {csv}, .columns = {"rate_deg_per_h=odd [furlong]"}}, ErrorCode::kBadInput,
+                 "found the unit \"furlong\", expected one of");
+  expect_refused({.data = {csv}, .units = {"gyro_a=parsec"}}, ErrorCode::kUsage,
+                 "--unit gyro_a: found the unit \"parsec\"");
+  expect_refused({.data = {csv}, .units = {"nobody=K"}}, ErrorCode::kBadInput, "--unit nobody: ");
+  EXPECT_TRUE(load_table({.data = {csv}, .columns = {"rate_deg_per_h=gyro_a"}}))
+      << "the a may be anything";
+}
+
 TEST_F(LoadTableTest, RenamesColumnsOfCsvAndOfRuns) {
   const std::string csv = folder_.file("a.csv", "omega,run\n1.5,1\n2.5,1\n").string();
   const auto table = load_table({.data = {csv}, .columns = {"rate_deg_per_h=omega"}});
