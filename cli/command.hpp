@@ -40,6 +40,7 @@ void add_dry_run(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 void add_runs(CLI::App& app, Action& action);
 void add_show(CLI::App& app, Action& action);
+void add_history(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
 void add_effects(CLI::App& app, Action& action);
 void add_fit(CLI::App& app, Action& action);

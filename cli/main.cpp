@@ -52,6 +52,7 @@ void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_simulate(app, action);
   fogbench::cli::add_runs(app, action);
   fogbench::cli::add_show(app, action);
+  fogbench::cli::add_history(app, action);
   fogbench::cli::add_export(app, action);
   fogbench::cli::add_effects(app, action);
   fogbench::cli::add_fit(app, action);

@@ -240,14 +240,14 @@ std::string instrument_table(const std::vector<procedures::InstrumentRecord>& in
   return table.empty() ? "" : "\n" + table.text();
 }
 
-std::string event_list(const std::vector<record::StoredEvent>& events) {
+std::string event_list(const std::vector<record::StoredEvent>& events, double zero_unix_s) {
   std::string text;
   for (const auto& event : events) {
-    text += fmt::format("  {:>12}  {:<7}  {}\n",
+    text += fmt::format("  {}  {:>12}  {:<7}  {}\n", drivers::utc_text(zero_unix_s + event.time_s),
                         procedures::duration_text(config::Seconds(event.time_s)), event.severity,
                         event.message);
   }
-  return text.empty() ? "" : "\nEvents, by time since power-on\n\n" + text;
+  return text.empty() ? "" : "\nEvents, by date and by time since power-on\n\n" + text;
 }
 
 }  // namespace
@@ -267,8 +267,10 @@ Result<std::string> run_text(record::RunLogReader& reader, std::int64_t run) {
   if (!results) return results.error();
   const auto events = reader.events(run);
   if (!events) return events.error();
+  const auto zero = reader.zero_unix_s(*stored);
+  if (!zero) return zero.error();
   return heading(*stored) + instrument_table(*instruments) + results_text_of(*results, true) +
-         event_list(*events);
+         event_list(*events, *zero);
 }
 
 Result<ordered_json> run_json(record::RunLogReader& reader, std::int64_t run) {
@@ -282,6 +284,8 @@ Result<ordered_json> run_json(record::RunLogReader& reader, std::int64_t run) {
   if (!results) return results.error();
   const auto events = reader.events(run);
   if (!events) return events.error();
+  const auto zero = reader.zero_unix_s(*stored);
+  if (!zero) return zero.error();
 
   ordered_json json = to_json(*stored);
   json["instruments"] = ordered_json::array();
@@ -298,8 +302,10 @@ Result<ordered_json> run_json(record::RunLogReader& reader, std::int64_t run) {
   json["measured"] = array_of(*points);
   json["events"] = ordered_json::array();
   for (const auto& event : *events) {
-    json["events"].push_back(
-        {{"time_s", event.time_s}, {"severity", event.severity}, {"message", event.message}});
+    json["events"].push_back({{"at", drivers::utc_text(*zero + event.time_s)},
+                              {"time_s", event.time_s},
+                              {"severity", event.severity},
+                              {"message", event.message}});
   }
   return json;
 }

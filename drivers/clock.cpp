@@ -56,6 +56,11 @@ std::string utc_text(Clock::WallTime time) {
   return fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::floor<std::chrono::seconds>(time)));
 }
 
+std::string utc_text(double unix_s) {
+  return utc_text(Clock::WallTime{
+      std::chrono::floor<Clock::WallTime::duration>(std::chrono::duration<double>(unix_s))});
+}
+
 double seconds_of_utc(const std::string& text) {
   int year = 0;
   unsigned month = 0, day = 0, hour = 0, minute = 0, second = 0;

@@ -78,6 +78,8 @@ class VirtualClock final : public Clock {
 
 /// ISO 8601 to the second: "2026-01-01T00:00:00Z".
 std::string utc_text(Clock::WallTime time);
+/// The same of Unix time in seconds.
+std::string utc_text(double unix_s);
 
 /// Such a text as seconds since 1970, UTC; NaN for any other.
 double seconds_of_utc(const std::string& text);

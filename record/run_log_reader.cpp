@@ -228,6 +228,13 @@ Result<std::vector<StoredRun>> RunLogReader::chain(std::int64_t run) {
   return parts;
 }
 
+Result<double> RunLogReader::zero_unix_s(const StoredRun& run) {
+  const auto steps = this->steps(run.run);
+  if (!steps) return steps.error();
+  const double begin_s = steps->empty() ? 0.0 : steps->front().started_s;
+  return drivers::seconds_of_utc(run.header.started_at) - begin_s;
+}
+
 Result<std::vector<StoredPoint>> RunLogReader::chain_points(std::int64_t run) {
   const auto parts = chain(run);
   if (!parts) return parts.error();
@@ -238,10 +245,10 @@ Result<std::vector<StoredPoint>> RunLogReader::chain_points(std::int64_t run) {
     auto points = this->points(part.run);
     if (!points) return points.error();
     if (parts->size() > 1) {
-      const auto steps = this->steps(part.run);
-      if (!steps) return steps.error();
-      const double begin_s = steps->empty() ? 0.0 : steps->front().started_s;
-      const double zero_s = drivers::seconds_of_utc(part.header.started_at) - begin_s - set_s;
+      const auto zero = zero_unix_s(part);
+      if (!zero) return zero.error();
+      const double begin_s = drivers::seconds_of_utc(part.header.started_at) - *zero;
+      const double zero_s = *zero - set_s;
       const auto stepped_s = clock_steps_s(part.run);
       if (!stepped_s) return stepped_s.error();
       set_s += *stepped_s;

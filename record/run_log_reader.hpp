@@ -68,6 +68,8 @@ class RunLogReader {
   Result<std::vector<StoredEvent>> events(std::int64_t run);
   Result<std::vector<StoredStep>> steps(std::int64_t run);
   /// The run's last trace, seconds since power-on; 0 when there is none.
+  /// When the run's times were 0, as Unix time in s, by the calendar that its dates follow.
+  Result<double> zero_unix_s(const StoredRun& run);
   Result<double> last_time(std::int64_t run);
   /// How far the machine's clock was set forward during the run, in all; negative: back.
   Result<double> clock_steps_s(std::int64_t run);
