@@ -152,8 +152,8 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
     return most;
   };
 
-  // Most noise shapes are hopeless, with each candidate as without: a sample of the candidates
-  // tells, and on a finer grid those that led on the coarse one.
+  // Most noise shapes are too unlikely to matter, with each candidate as without: a sample of the
+  // candidates tells, and on a finer grid those that led on the coarse one.
   MatrixXd sampled = whitened.sampled();
   std::vector<Block> sample = whitened.sample();
   std::vector<std::size_t> leading;
@@ -222,16 +222,16 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
     return out;
   };
   std::vector<double> merit = merits();
-  std::vector<std::size_t> hopeful;
+  std::vector<std::size_t> likely;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (merit[k] > std::log(kLeastShape) - kUnsampled) hopeful.push_back(k);
+    if (merit[k] > std::log(kLeastShape) - kUnsampled) likely.push_back(k);
   }
-  std::sort(hopeful.begin(), hopeful.end(), [&](std::size_t a, std::size_t b) {
+  std::sort(likely.begin(), likely.end(), [&](std::size_t a, std::size_t b) {
     return std::pair(-merit[a], a) < std::pair(-merit[b], b);
   });
-  if (hopeful.size() > kMostShapes) hopeful.resize(kMostShapes);
-  in_parallel(hopeful.size(), [&](std::size_t i) {
-    const std::size_t k = hopeful[i];
+  if (likely.size() > kMostShapes) likely.resize(kMostShapes);
+  in_parallel(likely.size(), [&](std::size_t i) {
+    const std::size_t k = likely[i];
     View& view = *all[k];
     MatrixXd z = *whitened.under(grid.shape(k), *view.whitener);
     const VectorXd lengths = z.colwise().norm();
@@ -247,7 +247,7 @@ Detector::Detector(const WhitenedLibrary& whitened, const MatrixXd& base, const 
   merit = merits();
 
   std::vector<std::pair<double, std::size_t>> ranked;
-  for (const std::size_t k : hopeful) {
+  for (const std::size_t k : likely) {
     if (merit[k] > std::log(kLeastShape)) ranked.emplace_back(-merit[k], k);
   }
   std::sort(ranked.begin(), ranked.end());

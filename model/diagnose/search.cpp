@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // A rival is dropped when its own world produces the leader's lead in less than this share of
-// draws; a shadow convicts the leader below kOutside.
+// draws; a shadow speaks against the leader below kOutside.
 constexpr double kRivalKept = 0.01;
 constexpr double kOutside = 0.003;
 // Each takes a simulation; who needs more has learned that he cannot tell.
@@ -24,7 +24,7 @@ constexpr std::size_t kMostRivals = 8;
 // A shape that is the effect itself in these data, but for rounding, is ahead by less than this.
 constexpr double kClearlyAhead = 2.0;
 // Rivals further behind than this are not simulated: exp(-12) of the leader's likelihood.
-constexpr double kHopeless = 24.0;
+constexpr double kTooFarBehind = 24.0;
 // A slow effect is told from a random walk only below this p-value.
 constexpr double kBeyondWalk = 2e-3;
 // An effect may take this many further values of its inner parameter before what is left counts as
@@ -138,7 +138,7 @@ class Search {
       });
       return look_outside(stage);
     }
-    if (absorb(stage, best)) return true;
+    if (extend_found(stage, best)) return true;
     const auto candidate = static_cast<std::size_t>(best);
     if (is_found(candidate)) return false;
     found().push_back({.candidate = candidate,
@@ -156,12 +156,12 @@ class Search {
     for (const std::size_t c : refused_) {
       const auto refused = static_cast<Index>(c);
       if (!stage.detector().testable(refused) || is_found(c)) continue;
-      convict(stage.candidate(refused).name, stage.p_value(refused), level());
+      hold_outside(stage.candidate(refused).name, stage.p_value(refused), level());
     }
     if (stage.shadows().empty()) return false;
     const Index best = stage.best(stage.shadows());
-    convict(stage.candidate(best).name, stage.p_value(best),
-            found().empty() ? options_.outside_level : kLeftBesideFound);
+    hold_outside(stage.candidate(best).name, stage.p_value(best),
+                 found().empty() ? options_.outside_level : kLeftBesideFound);
     return false;
   }
 
@@ -187,7 +187,7 @@ class Search {
     return out;
   }
 
-  void convict(const std::string& shape, double p, double level) {
+  void hold_outside(const std::string& shape, double p, double level) {
     if (p > level || p >= result_.p_outside) return;
     result_.outside_shape = shape;
     result_.p_outside = p;
@@ -202,7 +202,7 @@ class Search {
   /// where that explains the rest as well as the leader does. A second jump is more than the effect
   /// of one jump: something came and went, and the jump is refused. Something slow may be the
   /// truth, of which one jump was the first half.
-  bool absorb(Stage& stage, Index leader) {
+  bool extend_found(Stage& stage, Index leader) {
     for (std::size_t at = 0; at < found().size(); ++at) {
       Found& f = found()[at];
       const auto own = static_cast<Index>(f.candidate);
@@ -211,7 +211,7 @@ class Search {
       if (stage.at_edge(own)) continue;  // there it is another effect, or two
       const double lag = stage.lead()[leader] - stage.lead()[own];
       const bool as_well =
-          own == leader || (!candidate.instant() && lag < kHopeless &&
+          own == leader || (!candidate.instant() && lag < kTooFarBehind &&
                             stage.plausible(own, lag, stage.effects()) > kRivalKept);
       if (!as_well) continue;
       if (candidate.instant()) {
@@ -348,7 +348,7 @@ class Search {
     std::vector<std::pair<double, Index>> near;
     for (const Index c : stage.effects()) {
       const double lag = stage.lead()[own] - stage.lead()[c];
-      if (c == own || is_found(static_cast<std::size_t>(c)) || lag > kHopeless) continue;
+      if (c == own || is_found(static_cast<std::size_t>(c)) || lag > kTooFarBehind) continue;
       // Another form of it that contains it, and would lead if it were needed.
       if (stage.candidate(c).extends == f.effect) continue;
       if (!stage.stands(c)) continue;
@@ -388,11 +388,11 @@ class Search {
     const Index shadow = stage.best(shadows);
     const double ahead = stage.lead()[shadow] - stage.lead()[own];
     const double p = ahead > 0.0 ? stage.plausible(own, ahead, shadows) : 1.0;
-    convict(stage.candidate(shadow).name, p, kOutside);
+    hold_outside(stage.candidate(shadow).name, p, kOutside);
     if (p <= kOutside) return;
     f.shape_leads = ahead > kClearlyAhead;
     if (ahead > 0.0 ||
-        (-ahead < kHopeless && stage.plausible(shadow, -ahead, stage.effects()) > kRivalKept)) {
+        (-ahead < kTooFarBehind && stage.plausible(shadow, -ahead, stage.effects()) > kRivalKept)) {
       f.or_shape = stage.candidate(shadow).name;
     }
   }
