@@ -83,8 +83,7 @@ void interpolate(std::vector<double>& values, const std::vector<bool>& good) {
 /// One run's rows, as they stand in the table.
 class RunRows {
  public:
-  RunRows(const Table& table, const std::string& observable, Rows rows)
-      : table_(table), rows_(std::move(rows)) {
+  RunRows(const Table& table, const std::string& observable, Rows rows) : rows_(std::move(rows)) {
     const auto time = table.column("time_s");
     for (const std::size_t row : rows_) time_.push_back(time[row]);
     drop_repeats(table.has(observable) ? table.column(observable) : std::span<const double>());
@@ -248,7 +247,6 @@ class RunRows {
     rearrange(places);
   }
 
-  const Table& table_;
   Rows rows_;
   std::vector<double> time_;
 };

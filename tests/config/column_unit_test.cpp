@@ -6,7 +6,7 @@
 namespace fogbench::config {
 namespace {
 
-std::string named(std::string_view column) {
+std::string unit_named_in(std::string_view column) {
   const auto unit = unit_in_name(column);
   if (!unit) return "error";
   return *unit == nullptr ? "none" : std::string((*unit)->name);
@@ -28,7 +28,7 @@ TEST(UnitInName, IsReadFromBracketsAndFromTheNamesEnd) {
                                                         {"gyro [furlong]", "error"},
                                                         {"angle_mrad", "mrad"},
                                                         {"", "none"}}) {
-    EXPECT_EQ(named(column), unit) << column;
+    EXPECT_EQ(unit_named_in(column), unit) << column;
   }
 }
 

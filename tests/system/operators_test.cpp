@@ -73,7 +73,7 @@ TEST_F(OperatorsTest, AfterThisRunNoOtherThoughTheDaemonDies) {
   expect_says(queue_text(), "Held: asked for by ");
   EXPECT_EQ(json({"queue", "--json"})["jobs"][0]["procedure"], "third");
   expect_refused(fogbench({"queue", "--move", "9"}), 4, "job 9 is not in the queue");
-  expect_refused(fogbench({"queue", "--move", "1", "--to", "3"}), 4, "no place 3 in a queue of 2");
+  expect_refused(fogbench({"queue", "--move", "3", "--to", "3"}), 4, "no place 3 in a queue of 2");
   ASSERT_EQ(fogbench({"resume"}).status, 0);
   EXPECT_EQ(fogbench({"watch"}).status, 0);
   const auto runs = json({"runs", "--store", store(), "--json"})["runs"];

@@ -75,7 +75,7 @@ TEST_F(RecoveryTest, AfterTheDeathOfTheDaemonARunIsTakenUpAndTheQueueIsThere) {
   EXPECT_NE(fogbench({"status"}).out.find("fogbench resume 1"), std::string::npos);
 
   expect_refused(fogbench({"resume", "7"}), 3, "no run 7");
-  EXPECT_NE(fogbench({"resume", "1"}).out.find("Job 2 takes up run 1, gyro FOG-42:"),
+  EXPECT_NE(fogbench({"resume", "1"}).out.find("Job 3 takes up run 1, gyro FOG-42:"),
             std::string::npos);
   const Finished taken_up = fogbench({"watch"});
   EXPECT_EQ(taken_up.status, 0);
