@@ -8,12 +8,12 @@
 namespace fogbench::procedures {
 namespace {
 
-consteval PointChannel of_point(std::string_view name, double Point::*value) {
+constexpr PointChannel of_point(std::string_view name, double Point::*value) {
   const config::Channel* const channel = config::find_channel(name);
   return {channel->name, channel->meaning, value};
 }
 
-consteval MonitorChannel of_row(std::string_view name, double (*value)(const MonitorRow&)) {
+constexpr MonitorChannel of_row(std::string_view name, double (*value)(const MonitorRow&)) {
   const config::Channel* const channel = config::find_channel(name);
   return {channel->name, channel->meaning, value};
 }
