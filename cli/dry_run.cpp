@@ -18,7 +18,7 @@
 #include "daemon/run_options.hpp"
 #include "daemon/session.hpp"
 #include "daemon/simulated_operator.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::cli {
 namespace {

@@ -18,7 +18,7 @@
 #include "drivers/clock.hpp"
 #include "model/report/report_page.hpp"
 #include "model/report/svg_plot.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 #include "record/run_log_reader.hpp"
 
 namespace fogbench::cli {

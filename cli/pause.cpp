@@ -10,7 +10,7 @@
 #include "cli/common_options.hpp"
 #include "cli/control_client.hpp"
 #include "cli/status_text.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::cli {
 namespace {

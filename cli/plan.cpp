@@ -10,8 +10,8 @@
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
 #include "daemon/session.hpp"
-#include "procedures/estimate.hpp"
 #include "procedures/planned_points.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::cli {
 namespace {

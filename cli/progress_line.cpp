@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/output.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::cli {
 

@@ -7,7 +7,7 @@
 #include "cli/command.hpp"
 #include "cli/control_client.hpp"
 #include "cli/output.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "cli/output.hpp"
 #include "cli/status_text.hpp"
 #include "daemon/run_options.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::cli {
 namespace {

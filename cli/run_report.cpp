@@ -8,7 +8,7 @@
 #include "acceptance/results.hpp"
 #include "cli/output.hpp"
 #include "procedures/channel_values.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 #include "record/store.hpp"
 
 namespace fogbench::cli {

@@ -8,7 +8,7 @@
 
 #include "cli/shell_word.hpp"
 #include "config/units.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::cli {
 namespace {

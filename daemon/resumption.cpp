@@ -15,9 +15,9 @@
 #include "config/scratch_folder.hpp"
 #include "daemon/bench_difference.hpp"
 #include "daemon/parameters_json.hpp"
-#include "procedures/estimate.hpp"
 #include "procedures/planned_points.hpp"
 #include "procedures/resume_plan.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::daemon {
 namespace fs = std::filesystem;

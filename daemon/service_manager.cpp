@@ -9,7 +9,7 @@
 
 #include "config/json_file.hpp"
 #include "daemon/desk_json.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::daemon {
 namespace {

@@ -1,6 +1,6 @@
-#include <map>
+#include "procedures/branches.hpp"
 
-#include "procedures/expand.hpp"
+#include <map>
 
 namespace fogbench::procedures {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "procedures/estimate.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::procedures {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-// What a plan says and how long it will take, from simple figures of the bench file.
+// How long a plan will take, from simple figures of the bench file.
 
 #include <vector>
 
@@ -7,12 +7,6 @@
 #include "procedures/plan.hpp"
 
 namespace fogbench::procedures {
-
-/// "set 50 uT along OX, settle for 5 s, average for 180 s as coil_x/up"
-std::string sentence(const PlannedStep& step);
-
-/// "2 h 40 min", "3 min 5 s", "45 s"
-std::string duration_text(Seconds duration);
 
 /// Fills `estimate` of every step. Temperatures change at the bench's constant heating and cooling
 /// rates, starting from the room's.

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "procedures/branches.hpp"
+
 namespace fogbench::procedures {
 namespace {
 

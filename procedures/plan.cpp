@@ -9,6 +9,7 @@
 #include "procedures/check_limits.hpp"
 #include "procedures/estimate.hpp"
 #include "procedures/expand.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::procedures {
 namespace {

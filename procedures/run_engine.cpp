@@ -4,17 +4,114 @@
 
 #include <cassert>
 #include <exception>
+#include <utility>
 
 #include "drivers/named_error.hpp"
 #include "drivers/safe_state.hpp"
-#include "procedures/engine_run.hpp"
-#include "procedures/estimate.hpp"
+#include "procedures/bench_watch.hpp"
 #include "procedures/planned_points.hpp"
+#include "procedures/remaining_time.hpp"
+#include "procedures/run_session.hpp"
 #include "procedures/run_state.hpp"
+#include "procedures/sentence.hpp"
 
 namespace fogbench::procedures {
 
 using drivers::to_seconds;
+
+/// One run: goes through the plan's steps until the end or the first error.
+class RunEngine::Run {
+ public:
+  /// An indivisible block is begun at most this often.
+  static constexpr int kBlockTries = 3;
+
+  /// `points_before`: those of the run that is taken up.
+  Run(RunEngine& engine, const Plan& plan, std::size_t points_before)
+      : engine_(engine),
+        plan_(plan),
+        watch_(engine.config_, engine.bench_, engine.clock_, engine.recorder_,
+               [&engine] { return engine.abort_requested_.load(); }),
+        session_(
+            engine.config_, engine.bench_, engine.operator_, watch_,
+            [this] { return after_tick(); }, [this](const Point& point) { return record(point); }),
+        remaining_(plan),
+        points_before_(points_before),
+        started_(engine.clock_.now()),
+        step_started_(started_) {
+    engine_.run_ = this;
+    watch_.need(plan.needs);
+  }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+  ~Run() { engine_.run_ = nullptr; }
+
+  /// The error is the reason why the run ended early. Never throws.
+  Status execute();
+  /// The safe state and the end of the record. `outcome` is that of execute().
+  Result<RunEnd> finish(const Status& outcome);
+  std::size_t points() const { return points_; }
+  Status keep_watch() { return session_.tick(engine_.clock_.now() + BenchWatch::kPeriod); }
+
+ private:
+  Status execute_steps();
+  /// The next step, or what comes before it.
+  Status advance();
+  Result<StepResult> run_step(std::size_t index);
+  Status pause_if_asked();
+  /// An instrument was unplugged: coils to 0 A, read back, until all are there again; then the step
+  /// or its block begins anew. An error when that takes too long or happens too often.
+  Status interrupt(const std::string& reason);
+  Status await_return(const std::string& reason);
+  /// The record cannot be written: coils to 0 A until it can.
+  Status await_record(const Error& fault);
+  /// What an interruption leads to once it is over: the block's first step, or the step again.
+  Status begin_again(const std::string& reason);
+  /// Back to the block's first step, or an error when it has been tried often enough.
+  Status restart_block(const std::string& reason);
+  Status after_tick();
+  Status record(const Point& point);
+  void enter(RunEvent event);
+  /// While it lives, every report tells how long something has been waited for.
+  class Waits;
+  void report(const std::string& says) const;
+  /// Of the end: whoever displays it must not keep the bench from its safe state.
+  void try_to_report(const std::string& says) const;
+
+  RunEngine& engine_;
+  const Plan& plan_;
+  BenchWatch watch_;
+  RunSession session_;
+  RemainingTime remaining_;
+  std::size_t points_before_;
+  drivers::Clock::Instant started_, step_started_;
+  std::size_t step_ = 0;
+  std::string says_;
+  std::string paused_by_;  ///< the interlock that a pause is due to; empty for a person's
+  int block_ = 0, block_tries_ = 0;
+  int step_tries_ = 0;  ///< of a step outside any block
+  std::size_t points_ = 0, block_points_ = 0;
+  Waits* waits_ = nullptr;
+  bool record_given_up_ = false;  ///< it has been waited for long enough
+};
+
+class RunEngine::Run::Waits {
+ public:
+  Waits(Run& run, Seconds at_most) : run_(run), at_most_(at_most), since_(now()) {
+    run_.waits_ = this;
+  }
+  Waits(const Waits&) = delete;
+  Waits& operator=(const Waits&) = delete;
+  ~Waits() { run_.waits_ = nullptr; }
+  Seconds lasted() const { return Seconds{drivers::to_seconds(now() - since_)}; }
+  Seconds at_most() const { return at_most_; }
+  bool too_long() const { return lasted() > at_most_; }
+
+ private:
+  drivers::Clock::Instant now() const { return run_.engine_.clock_.now(); }
+  Run& run_;
+  Seconds at_most_;
+  drivers::Clock::Instant since_;
+};
 
 Status RunEngine::Run::execute() {
   // Nothing of ours throws; an observer that cannot print may, and memory may run out.
@@ -85,6 +182,150 @@ Result<StepResult> RunEngine::Run::run_step(std::size_t index) {
   const auto ended = engine_.recorder_.step_ended(step.path, watch_.now_s(), result->evidence);
   if (!ended) return ended.error();
   return result;
+}
+
+Status RunEngine::Run::pause_if_asked() {
+  // Nobody's resume lifts what an interlock still holds.
+  if (!engine_.pause_requested_ && session_.holds_pause().empty()) {
+    paused_by_.clear();
+    return {};
+  }
+  says_ = fmt::format("paused before: {}{}{}", plan_.steps[step_].says,
+                      paused_by_.empty() ? "" : "; by ", paused_by_);
+  step_started_ = engine_.clock_.now();
+  const auto noted = watch_.event("info", says_);
+  if (!noted) return noted;
+  enter(RunEvent::kPause);
+  for (;;) {
+    while (engine_.pause_requested_) {
+      auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
+      if (!ticked && ticked.error().code == ErrorCode::kUnplugged) {
+        ticked = await_return(ticked.error().message);
+      }
+      while (!ticked && ticked.error().code == ErrorCode::kStore && engine_.waits_for_record_) {
+        ticked = await_record(ticked.error());
+      }
+      if (!ticked) return ticked;
+    }
+    const std::string held = session_.holds_pause();
+    if (held.empty()) break;
+    engine_.pause_requested_ = true;
+    auto refused = watch_.event("warning", "not resumed: " + held);
+    while (!refused && refused.error().code == ErrorCode::kStore && engine_.waits_for_record_) {
+      refused = await_record(refused.error());
+    }
+    if (!refused) return refused;
+  }
+  paused_by_.clear();
+  enter(RunEvent::kResume);
+  return watch_.event("info", "resumed");
+}
+
+Status RunEngine::Run::interrupt(const std::string& reason) {
+  const PlannedStep& step = plan_.steps[step_];
+  const auto back = await_return(reason);
+  if (!back) {
+    if (back.error().code == ErrorCode::kStore || back.error().code == ErrorCode::kAborted) {
+      return back;
+    }
+    return Error{back.error().code,
+                 fmt::format("step {}, {}: {}", step.path, step.says, back.error().message)};
+  }
+  if (step.block == 0 && ++step_tries_ == RunSession::kTries) {
+    return Error{ErrorCode::kDevice, fmt::format("step {}, {}: interrupted {} times: {}", step.path,
+                                                 step.says, step_tries_, reason)};
+  }
+  return begin_again(reason);
+}
+
+Status RunEngine::Run::begin_again(const std::string& reason) {
+  const PlannedStep& step = plan_.steps[step_];
+  if (step.block != 0) return restart_block(reason);
+  return watch_.event("warning", fmt::format("step {} begins again: {}", step.path, reason));
+}
+
+Status RunEngine::Run::await_return(const std::string& reason) {
+  auto noted = watch_.event("warning", reason + "; coils to 0 A until it is back");
+  if (!noted) return noted;
+  const std::string interrupted = std::exchange(says_, "waiting for an instrument: " + reason);
+  const Waits waits(*this, engine_.config_.limits.absence_maximum);
+  for (;;) {
+    const auto off = session_.switch_off();
+    // Every reading must have come since: a tick reads all of them.
+    const auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
+    if (!ticked) return ticked;
+    if (off && watch_.new_row() != nullptr && watch_.all_answer()) {
+      noted = watch_.event("info", fmt::format("all instruments answer after {:.1f} s, the coils "
+                                               "read back 0 A",
+                                               waits.lasted().count()));
+      if (!noted) return noted;
+      // A block sets its own currents.
+      const auto restored = session_.restore(plan_.steps[step_].block == 0);
+      if (restored || restored.error().code != ErrorCode::kUnplugged) {
+        says_ = interrupted;
+        return restored;
+      }
+    }
+    if (waits.too_long()) {
+      return Error{ErrorCode::kDevice,
+                   fmt::format("still not back after {}: {}", duration_text(waits.at_most()),
+                               off ? reason : off.error().message)};
+    }
+  }
+}
+
+Status RunEngine::Run::await_record(const Error& fault) {
+  const std::string interrupted = std::exchange(says_, "waiting for the run log: " + fault.message);
+  const Waits waits(*this, engine_.config_.limits.record_wait_maximum);
+  watch_.keep_from_record(true);
+  for (;;) {
+    const auto off = session_.switch_off();
+    const auto ticked = session_.tick(engine_.clock_.now() + BenchWatch::kPeriod);
+    if (!ticked && ticked.error().code != ErrorCode::kUnplugged) return ticked;
+    if (off && ticked) {
+      const auto noted = engine_.recorder_.event(
+          watch_.now_s(), "warning",
+          fmt::format("{}; nothing was recorded for {:.1f} s, with the coils at 0 A", fault.message,
+                      waits.lasted().count()),
+          {});
+      if (noted) {
+        watch_.keep_from_record(false);
+        const auto restored = session_.restore(plan_.steps[step_].block == 0);
+        if (restored || restored.error().code != ErrorCode::kUnplugged) {
+          says_ = interrupted;
+          return restored;
+        }
+        watch_.keep_from_record(true);
+      }
+    }
+    if (waits.too_long()) {
+      record_given_up_ = true;
+      return Error{ErrorCode::kDevice, fmt::format("the run log could not be written for {}: {}",
+                                                   duration_text(waits.at_most()), fault.message)};
+    }
+  }
+}
+
+Status RunEngine::Run::restart_block(const std::string& reason) {
+  const PlannedStep& step = plan_.steps[step_];
+  if (block_ == 0) {
+    return Error{ErrorCode::kStale, fmt::format("step {}, {}: the point was voided {} times: {}",
+                                                step.path, step.says, RunSession::kTries, reason)};
+  }
+  if (block_tries_++ == kBlockTries) {
+    return Error{ErrorCode::kStale,
+                 fmt::format("step {}, {}: its indivisible block was interrupted {} times: {}",
+                             step.path, step.says, kBlockTries, reason)};
+  }
+  while (step_ > 0 && plan_.steps[step_ - 1].block == block_) --step_;
+  const auto noted =
+      watch_.event("warning", fmt::format("indivisible block {} interrupted, it restarts from step "
+                                          "{}: {}",
+                                          block_, plan_.steps[step_].path, reason));
+  if (!noted) return noted;
+  points_ -= block_points_;
+  block_points_ = 0;
+  return engine_.recorder_.void_block(block_, watch_.now_s(), reason);
 }
 
 Status RunEngine::Run::after_tick() {

@@ -1,8 +1,9 @@
+#include "procedures/sentence.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "procedures/estimate.hpp"
 #include "procedures/planned_points.hpp"
 
 namespace fogbench::procedures {

@@ -141,9 +141,7 @@ Violations sources_without_header(const Tree& tree) {
   const SourceFile* commands = find(tree, "cli/command.hpp");
   Violations found;
   for (const SourceFile& file : tree) {
-    if (!file.path.ends_with(".cpp") || !is_in_room(file) || kLooseRooms.contains(file.folder())) {
-      continue;
-    }
+    if (!file.path.ends_with(".cpp") || !is_in_room(file)) continue;
     const std::string header = file.path.substr(0, file.path.size() - 3) + "hpp";
     const std::string name = std::filesystem::path(file.path).stem();
     const bool is_family = file.path.starts_with("model/effects/catalogue/") ||

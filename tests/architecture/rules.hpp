@@ -28,9 +28,6 @@ inline const std::map<std::string, std::set<std::string>, std::less<>> kMaySee{
      {"daemon", "acceptance", "record", "procedures", "simulator", "model", "drivers", "config"}},
 };
 
-/// Rooms that were cut where their files grew long: not every source has a header of its own yet.
-inline const std::set<std::string, std::less<>> kLooseRooms{"procedures"};
-
 inline constexpr std::size_t kMostLines = 600;
 
 /// Every quoted include is rooted at the repository, exists, and is one that its folder may see.
@@ -45,7 +42,7 @@ Violations homeless_sources(const Tree& tree);
 /// A file is split by subject, never by length: beside every source of a room stands the header of
 /// its name, which says what it is about. Without one are main.cpp, one family of effects (the list
 /// of all is made by the build, or stands in simulator/effects/effect.hpp), and a command that
-/// cli/command.hpp declares, so that to add one takes one line. kLooseRooms are left out.
+/// cli/command.hpp declares, so that to add one takes one line.
 Violations sources_without_header(const Tree& tree);
 /// Rooms ask the Clock for time (drivers/clock.* alone asks the machine), and draw random numbers
 /// from a seed (daemon/session.cpp alone draws a seed that nobody gave, which the run log keeps).

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "procedures/branches.hpp"
 #include "tests/procedures/procedure_builder.hpp"
 
 namespace fogbench::procedures {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "procedures/check_limits.hpp"
-#include "procedures/estimate.hpp"
 #include "procedures/expand.hpp"
+#include "procedures/sentence.hpp"
 #include "tests/procedures/procedure_builder.hpp"
 
 namespace fogbench::procedures {
