@@ -19,10 +19,10 @@
 namespace fogbench::simulator {
 
 struct AuxiliaryEnd {
+  using End = std::variant<std::unique_ptr<ModbusFarEnd>, std::unique_ptr<ScpiFarEnd>,
+                           std::unique_ptr<HidFarEnd>, std::unique_ptr<LineFarEnd>>;
   std::string name;
-  std::variant<std::unique_ptr<ModbusFarEnd>, std::unique_ptr<ScpiFarEnd>,
-               std::unique_ptr<HidFarEnd>, std::unique_ptr<LineFarEnd>>
-      end;
+  End end;
 };
 
 /// They share the plant and keep it alive; none may be used from two threads at once.

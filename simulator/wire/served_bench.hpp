@@ -15,6 +15,7 @@
 #include "simulator/wire/deferring_clock.hpp"
 #include "simulator/wire/event_loop.hpp"
 #include "simulator/wire/modbus_unit.hpp"
+#include "simulator/wire/usbip_server.hpp"
 
 namespace fogbench::simulator {
 
@@ -48,21 +49,38 @@ class ServedBench {
   std::uint16_t usbip_port() const { return usbip_port_; }
 
   /// Serves until `stop` is readable. On one thread, without waiting for anybody.
-  Status run(int stop) { return run_event_loop(servers_, clock_, speed_, stop); }
+  Status run(int stop) { return run_event_loop(servers_, clock_, options_.speed, stop); }
+
+  /// For who stands beside the bench: what is behind the wires, the clock that it goes by, and a
+  /// server more in its loop.
+  FarEnds& far_ends() { return ends_; }
+  const drivers::Clock& clock() const { return clock_; }
+  void add(std::unique_ptr<Server> server) { servers_.push_back(std::move(server)); }
 
  private:
-  ServedBench(const drivers::Clock& machine, double speed) : clock_(machine), speed_(speed) {}
-  /// `port` 0: any.
-  Status serve_modbus(const std::string& name, const std::string& connection, std::uint8_t unit_id,
-                      ModbusFarEnd& far_end, std::uint16_t port, const ServeOptions& options);
-  Status serve_usb(const config::BenchConfig& config, const ServeOptions& options);
-  Status serve_auxiliary(const config::BenchConfig& config, const ServeOptions& options);
-  Status serve_lines(const config::BenchConfig& config, const ServeOptions& options);
+  ServedBench(const drivers::Clock& machine, const ServeOptions& options)
+      : clock_(machine), options_(options) {}
+
+  Status serve(const config::BenchConfig& config);
+  template <class Device>
+  Status serve(const config::AuxiliaryConfig& sensor, const Device& device, AuxiliaryEnd::End& end);
+  /// Modbus: over TCP at `port`, 0: any, and on a serial line.
+  Status serve_registers(const std::string& name, const config::InstrumentConfig& its,
+                         std::uint8_t unit_id, ModbusFarEnd& far_end, std::uint16_t port);
+  /// SCPI: on USB or a serial line, as the bench connects it; `usual` where it does not say.
+  Status serve_messages(const std::string& name, const config::InstrumentConfig& its,
+                        const std::string& product, const std::string& usual, ScpiFarEnd& far_end);
+  Status serve_reports(const std::string& name, const config::InstrumentConfig& its,
+                       const config::HidDevice& layout, HidFarEnd& far_end);
+  template <class LineServing, class FarEnd, class... Rest>
+  Status serve_line(const std::string& name, FarEnd& far_end, Rest&&... rest);
+  Status serve_usb(const std::string& name, const char* scheme, std::unique_ptr<UsbDevice> device);
 
   DeferringClock clock_;
-  const double speed_;
+  const ServeOptions options_;
   FarEnds ends_;
   std::vector<std::unique_ptr<ModbusUnit>> units_;
+  std::vector<ExportedDevice> usb_devices_;
   std::vector<std::unique_ptr<Server>> servers_;
   std::vector<ServedInstrument> instruments_;
   std::uint16_t usbip_port_ = 0;

@@ -36,12 +36,21 @@ void expect_identity(const std::string& bench_file, const std::string& device_fi
 
 }  // namespace
 
+std::vector<std::string> hid_stand_in(const std::filesystem::path& folder, int usbip_port) {
+  // To the loader a blank ends a path, and the clone may lie below a folder with one in its name.
+  const std::filesystem::path library = folder / "hid_stand_in.so";
+  std::error_code is_there_already;
+  std::filesystem::create_symlink(built("hid_stand_in.so"), library, is_there_already);
+  return {"LD_PRELOAD=" + library.string(), "FOGBENCH_TEST_USBIP=" + std::to_string(usbip_port)};
+}
+
 FarBench::FarBench(double boost, const std::string& identity)
     : process_({built("far_bench"), folder_.path().string(), std::to_string(boost)}) {
-  if (!process_.wait_for_output("ready", std::chrono::seconds{60})) {
+  if (!process_.wait_for_output("\n", std::chrono::seconds{60})) {
     ADD_FAILURE() << "no far ends: " << process_.wait(std::chrono::seconds{1}).err;
     return;
   }
+  usbip_port_ = std::stoi(process_.output().substr(std::string("ready ").size()));
   if (!identity.empty()) {
     expect_identity(path("bench.json"), path("coil_vertical.json"), identity);
   }
@@ -74,14 +83,10 @@ std::unique_ptr<Process> FarBench::daemon(const std::vector<std::string>& enviro
     command.insert(command.end(), procedures.begin(), procedures.end());
   }
   Process::Setup setup{environment, {}};
-  // To the loader a blank ends a path, and the clone may lie below a folder with one in its name.
-  const std::string stand_in = path("hid_stand_in.so");
-  std::error_code is_there_already;
-  std::filesystem::create_symlink(built("hid_stand_in.so"), stand_in, is_there_already);
-  setup.environment.push_back("LD_PRELOAD=" + stand_in);
+  const auto stand_in = hid_stand_in(folder_.path(), usbip_port_);
+  setup.environment.insert(setup.environment.end(), stand_in.begin(), stand_in.end());
   // Other benches have instruments of the same names.
   setup.environment.push_back("FOGBENCH_LOCKS=" + folder_.path().string());
-  setup.environment.push_back("FOGBENCH_TEST_HID=" + path("magnetometer"));
   return std::make_unique<Process>(command, setup);
 }
 

@@ -2,6 +2,7 @@
 // A test's hold on far ends that are a process of their own (main.cpp), and on the daemons that
 // meet them.
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +12,10 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace fogbench::far_bench {
+
+/// The environment in which a program meets, in place of libhidapi's devices, those that a served
+/// bench exports over USB/IP (hid_stand_in.cpp). `folder` has no blank in its name.
+std::vector<std::string> hid_stand_in(const std::filesystem::path& folder, int usbip_port);
 
 class FarBench {
  public:
@@ -37,6 +42,7 @@ class FarBench {
   support::TemporaryFolder folder_;
   support::Process process_;
   int control_ = -1;
+  int usbip_port_ = 0;
 };
 
 }  // namespace fogbench::far_bench
