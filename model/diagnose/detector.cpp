@@ -329,7 +329,7 @@ VectorXd Detector::fitted_signal(Index candidate) const {
   return library_.columns.middleCols(b.first, b.width) * coefficients(candidate).value;
 }
 
-Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate) const {
+Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate, Among among) const {
   // Posterior weights of the shapes, and what is left of the squares in each.
   std::vector<double> squares(views_.size()), weight(views_.size());
   for (std::size_t v = 0; v < views_.size(); ++v) {
@@ -383,11 +383,28 @@ Draws Detector::draw(Index count, std::uint64_t seed, Index with_candidate) cons
   draws.scores.resize(views_.size());
   in_parallel(views_.size(), [&](std::size_t v) {
     draws.residuals[v] = views_[v]->project(views_[v]->whitener->whiten(noise)).cast<float>();
-    const MatrixXf &u = views_[v]->u, &residuals = draws.residuals[v];
-    draws.scores[v].resize(u.cols(), count);
-    kernels().scores(u.data(), residuals.data(), u.rows(), u.cols(), count, draws.scores[v].data());
   });
+  score(draws, among);
   return draws;
+}
+
+void Detector::score(Draws& draws, Among among) const {
+  const Index columns = library_.columns_of(among == Among::kEffects);
+  in_parallel(views_.size(), [&](std::size_t v) {
+    const MatrixXf &u = views_[v]->u, &residuals = draws.residuals[v];
+    MatrixXf& scores = draws.scores[v];
+    const Index first = scores.rows();
+    if (first >= columns) return;
+    MatrixXf more(columns - first, draws.count);
+    kernels().scores(u.col(first).data(), residuals.data(), u.rows(), more.rows(), draws.count,
+                     more.data());
+    if (first == 0) {
+      scores = std::move(more);
+    } else {
+      scores.conservativeResize(columns, draws.count);
+      scores.bottomRows(more.rows()) = more;
+    }
+  });
 }
 
 MatrixXd Detector::lambdas(const Draws& draws, const VectorXd& signal, Among among) const {
@@ -406,7 +423,7 @@ MatrixXd Detector::scan(const Draws& draws, const VectorXd& signal, Among among,
     const VectorXd s = views_[v]->project(views_[v]->whitener->whiten(signal));
     row += (2.0 * (s.cast<float>().transpose() * draws.residuals[v]).cast<double>()).matrix();
     row.array() += s.squaredNorm();
-    shift[v] = views_[v]->u.transpose() * s.cast<float>();
+    shift[v] = views_[v]->u.leftCols(draws.scores[v].rows()).transpose() * s.cast<float>();
   }
   MatrixXd out = MatrixXd::Constant(candidates(), draws.count, -1.0);
   in_parallel(static_cast<std::size_t>(draws.count), [&](std::size_t draw) {

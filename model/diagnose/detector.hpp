@@ -23,7 +23,8 @@ namespace fogbench::model {
 /// Data made of noise, whitened under every kept shape: what candidates are calibrated on.
 struct Draws {
   std::vector<Eigen::MatrixXf> residuals;  ///< per kept shape, rows x draws, base projected out
-  std::vector<Eigen::MatrixXf> scores;     ///< per kept shape, library columns x draws
+  /// Per kept shape, library columns x draws; of the first columns, as far as they were asked for.
+  std::vector<Eigen::MatrixXf> scores;
   Eigen::Index count = 0;
 };
 
@@ -42,11 +43,14 @@ class Detector {
   /// Lambda of any columns (not of the library).
   double lambda_of(const Eigen::MatrixXd& columns) const;
 
-  /// Noise drawn from its posterior given the base, or given the base and a candidate's best block.
-  Draws draw(Eigen::Index count, std::uint64_t seed, Eigen::Index with_candidate = -1) const;
   enum class Among { kAll, kEffects };
+  /// Noise drawn from its posterior given the base, or given the base and a candidate's best block.
+  Draws draw(Eigen::Index count, std::uint64_t seed, Eigen::Index with_candidate = -1,
+             Among among = Among::kAll) const;
+  /// Adds the scores of further candidates to draws that have those of the effects alone.
+  void score(Draws& draws, Among among) const;
   /// candidates x draws, -1 where a candidate is not testable or not among those wanted; `signal`
-  /// (rows) is added to every draw where it is not empty.
+  /// (rows) is added to every draw where it is not empty. The draws are scored for those wanted.
   Eigen::MatrixXd lambdas(const Draws& draws, const Eigen::VectorXd& signal = {},
                           Among among = Among::kAll) const;
   /// What the candidate's best block contributes to the data, fitted: rows.

@@ -244,6 +244,16 @@ double Candidate::spacing(double inner) const {
   return std::isinf(above) ? inner - below : 0.5 * (above - below);
 }
 
+Eigen::Index Library::columns_of(bool effects_alone) const {
+  if (!effects_alone) return columns.cols();
+  Eigen::Index end = 0;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.shadow()) continue;
+    for (const Block& block : candidate.blocks) end = std::max(end, block.first + block.width);
+  }
+  return end;
+}
+
 Result<Library> make_library(const LibrarySource& source) {
   LibraryBuilder builder(source);
   const auto stands_in = [&](std::string_view effect) {

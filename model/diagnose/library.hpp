@@ -64,9 +64,12 @@ struct NotTestable {
 };
 
 struct Library {
-  std::vector<Candidate> candidates;
+  std::vector<Candidate> candidates;  ///< the shadows last
   Eigen::MatrixXd columns;  ///< one row per row of WorkingTable, finite
   std::vector<NotTestable> not_testable;
+
+  /// So many of the first columns hold those of all effects, or of all candidates.
+  Eigen::Index columns_of(bool effects_alone) const;
 };
 
 /// What libraries are made from. All must outlive the library.

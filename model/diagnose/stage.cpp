@@ -87,8 +87,8 @@ Index Stage::leader(const std::vector<std::size_t>& refused) const {
 }
 
 double Stage::plausible(Index world, double lag, const std::vector<Index>& others) {
-  const Noise& noise = noise_of(world);
   const auto among = &others == &effects_ ? Detector::Among::kEffects : Detector::Among::kAll;
+  const Noise& noise = noise_of(world, among);
   const MatrixXd leads = calibration_.lead(detector_.lambdas(
       noise.draws, detector_.fitted_signal(world) / larger_noise(world, noise), among));
   Index reached = 0;
@@ -100,10 +100,15 @@ double Stage::plausible(Index world, double lag, const std::vector<Index>& other
   return static_cast<double>(reached) / static_cast<double>(leads.cols());
 }
 
-const Stage::Noise& Stage::noise_of(Index world) {
+const Stage::Noise& Stage::noise_of(Index world, Detector::Among among) {
   const auto [known, is_new] = noise_.try_emplace(detector_.best_view(world));
-  if (is_new) known->second = {world, detector_.draw(kRivalDraws, seed_ + 1, world)};
-  return known->second;
+  Noise& noise = known->second;
+  if (is_new) {
+    noise = {world, detector_.draw(kRivalDraws, seed_ + 1, world, among)};
+  } else {
+    detector_.score(noise.draws, among);
+  }
+  return noise;
 }
 
 double Stage::larger_noise(Index world, const Noise& noise) const {

@@ -61,7 +61,8 @@ class Stage {
     Eigen::Index beside;
     Draws draws;
   };
-  const Noise& noise_of(Eigen::Index world);
+  /// Scored for those wanted.
+  const Noise& noise_of(Eigen::Index world, Detector::Among among);
   /// More draws may change what the lead of the best of these means.
   bool is_open(const std::vector<Eigen::Index>& among) const;
   /// How much larger it must be where `world` is the truth: by what the other one explains more,

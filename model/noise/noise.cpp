@@ -9,18 +9,13 @@
 namespace fogbench::model {
 namespace {
 
-// One state for each term of the ladder and one for the walk; see kMostTerms of the ladder.
-constexpr int kMostStates = 10;
 constexpr Eigen::Index kColumnsAtATime = 64;
-using State = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1>;
-using StateCovariance =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostStates, kMostStates>;
 
 /// The innovations form. With the state s at a window's start, its prediction covariance P and the
 /// window's mean y:
 ///   innovation v = y - phi's,  variance S,  next start: s <- decay * s + gain v
 /// The gains depend on the noise and the windows, not on y, so any number of columns is filtered
-/// at the cost of two products a row.
+/// at the cost of two products a row (fit/kernels.hpp).
 class StateSpaceWhitener final : public Whitener {
  public:
   StateSpaceWhitener(std::shared_ptr<const WindowGeometry> geometry, const NoiseCoefficients& noise)
@@ -35,10 +30,17 @@ class StateSpaceWhitener final : public Whitener {
     terms_ = g.phi.rows();
     gain_.resize(terms_ + 1, g.rows());
     deviation_.resize(g.rows());
-    for (std::size_t run = 0; run + 1 < g.run_begin.size(); ++run) {
-      filter_run(static_cast<Eigen::Index>(g.run_begin[run]),
-                 static_cast<Eigen::Index>(g.run_begin[run + 1]));
-    }
+    const Eigen::ArrayXd own =
+        flicker_variance_ * g.mean_spread + k2_ * g.duration_h / 3.0 + white_variance_;
+    const Eigen::ArrayXd walk_end = 0.5 * k2_ * g.duration_h, walk = k2_ * g.step_h;
+    const Kernels::Noise noise_of_rows{.variance = flicker_variance_,
+                                       .own = own.data(),
+                                       .end_covariance = g.end_cov.data(),
+                                       .walk_end = walk_end.data(),
+                                       .walk = walk.data()};
+    for_each_run([&](Eigen::Index first, Eigen::Index last) {
+      kernels().gains(states(), noise_of_rows, first, last, gain_.data(), deviation_.data());
+    });
   }
 
   Eigen::MatrixXd whiten(const Eigen::MatrixXd& columns) const override {
@@ -93,20 +95,20 @@ class StateSpaceWhitener final : public Whitener {
   }
 
  private:
-  State phi(Eigen::Index i) const {
-    State phi(terms_ + 1);
-    phi.head(terms_) = geometry_->phi.col(i);
-    phi[terms_] = 1.0;
+  Kernels::States states() const {
+    return {.phi = geometry_->phi.data(), .decay = geometry_->decay.data(), .terms = terms_};
+  }
+
+  Eigen::VectorXd phi(Eigen::Index i) const {
+    Eigen::VectorXd phi(terms_ + 1);
+    phi << geometry_->phi.col(i).matrix(), 1.0;
     return phi;
   }
 
   /// One column of the data a row.
   void whiten_transposed(Eigen::MatrixXd& block) const {
-    const Kernels::Filter filter{.phi = geometry_->phi.data(),
-                                 .decay = geometry_->decay.data(),
-                                 .gain = gain_.data(),
-                                 .deviation = deviation_.data(),
-                                 .terms = terms_};
+    const Kernels::Filter filter{
+        .states = states(), .gain = gain_.data(), .deviation = deviation_.data()};
     for_each_run([&](Eigen::Index first, Eigen::Index last) {
       kernels().innovations(filter, first, last, block.rows(), block.data());
     });
@@ -117,31 +119,6 @@ class StateSpaceWhitener final : public Whitener {
     for (std::size_t k = 0; k + 1 < geometry_->run_begin.size(); ++k) {
       run(static_cast<Eigen::Index>(geometry_->run_begin[k]),
           static_cast<Eigen::Index>(geometry_->run_begin[k + 1]));
-    }
-  }
-
-  void filter_run(Eigen::Index first, Eigen::Index last) {
-    const WindowGeometry& g = *geometry_;
-    StateCovariance p = StateCovariance::Zero(terms_ + 1, terms_ + 1);
-    p.diagonal().head(terms_).setConstant(flicker_variance_);
-    State decay(terms_ + 1), cross(terms_ + 1);
-    decay[terms_] = 1.0;
-    for (Eigen::Index i = first; i < last; ++i) {
-      decay.head(terms_) = g.decay.col(i);
-      const State observed = phi(i);
-      const State p_phi = p * observed;
-      const double variance = observed.dot(p_phi) + flicker_variance_ * g.mean_spread[i] +
-                              k2_ * g.duration_h[i] / 3.0 + white_variance_[i];
-      cross = decay.cwiseProduct(p_phi);
-      cross.head(terms_) += flicker_variance_ * g.end_cov.col(i).matrix();
-      cross[terms_] += 0.5 * k2_ * g.duration_h[i];
-      deviation_[i] = std::sqrt(variance);
-      gain_.col(i) = cross / variance;
-      p = decay.asDiagonal() * p * decay.asDiagonal();
-      p.noalias() -= cross * cross.transpose() / variance;
-      p.diagonal().head(terms_).array() +=
-          flicker_variance_ * (1.0 - decay.head(terms_).array().square());
-      p(terms_, terms_) += k2_ * g.step_h[i];
     }
   }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "config/units.hpp"
+#include "model/fit/kernels.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kOverlapTolerance = 0.01;
 // A ladder with a ratio of 4 follows the 1/f spectrum to better than 1 %.
 constexpr double kWantedRatio = 4.0;
 constexpr int kFewestTerms = 6;
-constexpr int kMostTerms = 9;
+constexpr int kMostTerms = Kernels::kMostStates - 1;  // and the walk
 
 double start_s(const Windows& w, Eigen::Index i) {
   return w.centre_s[i] - 0.5 * w.duration_s[i];
