@@ -92,17 +92,23 @@ Result<Expression> Expression::parse(const std::string& term, const std::string&
 Eigen::VectorXd Expression::evaluate(const Signals& signals, std::span<const double> values) const {
   Eigen::VectorXd result(static_cast<Eigen::Index>(signals.rows()));
   mu::Parser& parser = *parser_;
-  // Parameters enter as constants: in bulk mode every variable has a value a row.
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     parser.DefineConst(parameters_[i], values[i]);
   }
-  for (const std::string& name : signals_) {
-    // The parser only reads its variables.
-    parser.DefineVar(name, const_cast<double*>(signals.signal(name).data()));  // NOLINT
+  // Row by row: the parser's bulk mode keeps all processors waiting for each other, for each of
+  // thousands of small tables.
+  std::vector<double> row(signals_.size());
+  std::vector<const double*> columns;
+  for (std::size_t i = 0; i < signals_.size(); ++i) {
+    columns.push_back(signals.signal(signals_[i]).data());
+    parser.DefineVar(signals_[i], &row[i]);
   }
   try {
     parser.SetExpr(text_);
-    parser.Eval(result.data(), static_cast<int>(result.size()));
+    for (Eigen::Index r = 0; r < result.size(); ++r) {
+      for (std::size_t i = 0; i < row.size(); ++i) row[i] = columns[i][r];
+      result[r] = parser.Eval();
+    }
   } catch (const mu::ParserError&) {  // parse() has tried it: not seen yet
     result.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
