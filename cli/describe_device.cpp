@@ -23,7 +23,8 @@ std::string bounds(const std::optional<double>& minimum, const std::optional<dou
 }
 
 std::string scaling(double scale, double offset) {
-  return offset == 0.0 ? fmt::format("{}", scale) : fmt::format("{}, from {}", scale, offset);
+  return offset == 0.0 ? fmt::format("{:.9g}", scale)
+                       : fmt::format("{:.9g}, from {:.9g}", scale, offset);
 }
 
 std::string age(const config::Seconds& max_age, const std::optional<config::Seconds>& stuck) {
@@ -108,11 +109,13 @@ std::string describe(const config::FrameDevice& d) {
   if (d.temperature) fields.push_back(*d.temperature);
   fields.insert(fields.end(), d.others.begin(), d.others.end());
   return fmt::format(
-      "frames of {} bytes from {:02X}, {} a second at {} baud; sequence 0 ... {} in byte {}, "
-      "status "
-      "in byte {}, {} bits of check in byte {}{}\n{}",
+      "frames of {} bytes from {:02X}, {} a second at {} baud; sequence 0 ... {}, {} in byte {}, "
+      "{}, {} bits of check in byte {}{}\n{}",
       d.frame_bytes, fmt::join(d.header, " "), d.frame_rate_hz, d.baud, d.sequence_modulus - 1,
-      d.sequence_offset_bytes, d.status_offset_bytes, d.crc.width_bits, d.crc.offset_bytes,
+      drivers::name_of(d.sequence_type), d.sequence_offset_bytes,
+      d.status_offset_bytes ? fmt::format("status in byte {}", *d.status_offset_bytes)
+                            : std::string("no status"),
+      d.crc.width_bits, d.crc.offset_bytes,
       d.stuck_after
           ? fmt::format("; a rate that stands still for {} s is not valid", d.stuck_after->count())
           : "",

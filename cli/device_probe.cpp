@@ -42,8 +42,10 @@ Result<std::pair<config::DeviceFile, std::string>> find_in_bench(const std::stri
       {"thermostat", {bench->thermostat.device, bench->thermostat.connection}},
       {"coil_horizontal", {bench->coil_horizontal.device, bench->coil_horizontal.connection}},
       {"coil_vertical", {bench->coil_vertical.device, bench->coil_vertical.connection}},
-      {"magnetometer", {bench->magnetometer.device, bench->magnetometer.connection}},
       {"gyro", {bench->gyro.device, bench->gyro.connection}}};
+  if (bench->magnetometer.fitted) {
+    instruments["magnetometer"] = {bench->magnetometer.device, bench->magnetometer.connection};
+  }
   if (bench->turntable.device) {
     instruments["turntable"] = {*bench->turntable.device, bench->turntable.connection};
   }

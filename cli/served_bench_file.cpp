@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "config/bench.hpp"
 #include "config/json_file.hpp"
 
 namespace fogbench::cli {
@@ -19,8 +20,8 @@ Result<std::string> served_bench_json(const fs::path& file,
   }
   const auto absolute = [&](const std::string& name) {
     std::error_code ignored;
-    const fs::path path = fs::absolute(file, ignored).parent_path() / name;
-    return path.lexically_normal().string();
+    const auto device = config::device_file(file, name);
+    return device ? fs::absolute(*device, ignored).lexically_normal().string() : name;
   };
   bench.erase("$schema");
   bench.erase("simulation");

@@ -5,6 +5,8 @@
 
 #include "config/connection.hpp"
 #include "config/describe_bench.hpp"
+#include "config/json_file.hpp"
+#include "config/paths.hpp"
 
 namespace fogbench::config {
 namespace {
@@ -86,15 +88,42 @@ bool Codec<DeviceReference<SensorDevice>>::read(const Place& at, DeviceReference
 std::optional<DeviceFile> read_named_device(const Place& at) {
   std::string name;
   if (!read_text(at, name)) return std::nullopt;
-  const std::filesystem::path file = (at.file().parent_path() / name).lexically_normal();
-  auto device = load_device(file);
+  const auto file = device_file(at.file(), name);
+  if (!file) {
+    at.fail(file.error().message);
+    return std::nullopt;
+  }
+  auto device = load_device(*file);
   if (!device) {
-    std::error_code ignored;
-    const bool inside_bench = !std::filesystem::is_regular_file(file, ignored);
-    inside_bench ? at.fail(device.error().message) : at.fail(device.error());
+    at.fail(device.error());
     return std::nullopt;
   }
   return std::move(*device);
+}
+
+Result<std::filesystem::path> device_file(const std::filesystem::path& bench,
+                                          const std::string& device) {
+  namespace fs = std::filesystem;
+  const fs::path folder = bench.parent_path();
+  const bool plain = device.find('/') == std::string::npos;
+  const fs::path relative = (folder / device).lexically_normal();
+  const fs::path beside = (folder / "../devices" / (device + ".json")).lexically_normal();
+  std::error_code error;
+  if (fs::is_regular_file(relative, error)) return relative;
+  if (plain && fs::is_regular_file(beside, error)) return beside;
+  const auto ready = find_ready("devices", plain ? device : fs::path(device).stem().string());
+  if (plain && ready) return ready;
+  const std::string is = fs::exists(relative, error) ? "not a file" : "no such file";
+  if (ready) {
+    return bad_input(fmt::format(
+        "\"{}\", seen from this file, is {}: {}; expected a path from "
+        "there, or the ready device's name, \"{}\"",
+        one_line(device), one_line(relative.string(), 200), is, ready->stem().string()));
+  }
+  return bad_input(
+      fmt::format("\"{}\", seen from this file, is {}: {}; expected a path from "
+                  "there, or a ready device ({})",
+                  one_line(device), one_line(relative.string(), 200), is, ready_names("devices")));
 }
 
 bool check(const Place& at, const InstrumentConfig& i) {
@@ -131,6 +160,15 @@ bool check_usb_ids(const Place& at, const InstrumentConfig& i, const Device& dev
 }
 
 bool check(const Place& at, const MagnetometerConfig& m) {
+  if (m.fitted != (at / "device").present()) {
+    return (at / "device")
+        .wrong(m.fitted ? "a device file; \"fitted\": false says that there is no magnetometer"
+                        : "none: no magnetometer is fitted");
+  }
+  if (!m.fitted) return check(at, static_cast<const InstrumentConfig&>(m));
+  if ((at / "ambient_ut").present()) {
+    return (at / "ambient_ut").wrong("none: the magnetometer measures the ambient field");
+  }
   return check(at, static_cast<const InstrumentConfig&>(m)) &&
          check_scheme(at, m, {"hid:"}, "a magnetometer on hid:") && check_usb_ids(at, m, m.device);
 }

@@ -32,7 +32,11 @@ struct ThermostatConfig : InstrumentConfig {
   Seconds sensor_lag{0.0};
 };
 struct MagnetometerConfig : InstrumentConfig {
-  HidDevice device;
+  /// false: the field is reckoned from the coils' currents and `ambient_ut`.
+  bool fitted = true;
+  HidDevice device;  ///< of one that is fitted
+  /// The ambient field where none is fitted, bench frame: up, north, east.
+  std::array<double, 3> ambient_ut{0.0, 0.0, 0.0};
 };
 
 /// One pair of Helmholtz coils and its supply.
@@ -169,7 +173,13 @@ std::vector<SensorChannel> auxiliary_channels(const BenchConfig& bench);
 /// The first moment of a day written YYYY-MM-DD; nothing when there is no such day.
 std::optional<std::chrono::sys_days> date_of(const std::string& text);
 
-/// Reads a bench and the device files that it names ("device": "../devices/x.json").
+/// The device file that a bench's file means by "device": a path relative to the bench's file, or
+/// the name of one in the folder devices beside the bench's own folder, or of a ready one.
+/// kBadInput says where it was looked for.
+Result<std::filesystem::path> device_file(const std::filesystem::path& bench,
+                                          const std::string& device);
+
+/// Reads a bench and the device files that it names ("device": "gyro-kvh").
 /// Errors: kBadInput, one line with the file and the JSON pointer.
 Result<BenchConfig> load_bench(const std::filesystem::path& file);
 

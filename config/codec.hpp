@@ -51,9 +51,12 @@ struct Codec {
     if (!at.value().is_object()) return at.wrong("an object");
     ObjectReader reader(at);
     describe(reader, out);
-    if (!reader.finish()) return false;
-    if constexpr (requires { check(at, out); }) return check(at, out);
-    return true;
+    const bool whole = reader.finish();
+    bool ok = whole;
+    if constexpr (requires { check_names(at, out); }) ok = check_names(at, out) && ok;
+    // How the parts agree can only be told when all have been read.
+    if constexpr (requires { check(at, out); }) ok = whole && check(at, out) && ok;
+    return ok;
   }
   static ordered_json schema(const Rule& /*rule*/) {
     SchemaWriter writer;

@@ -10,7 +10,7 @@
 
 namespace fogbench::config {
 
-/// A key that names a device file, relative to the file that it stands in.
+/// A key that names a device file: a ready one, or a path relative to the file that it stands in.
 template <class Device>
 struct DeviceReference {
   Device& device;
@@ -72,7 +72,8 @@ template <class Visitor>
 void describe(Visitor& v, ThermostatConfig& t) {
   describe_instrument(v, t);
   v.required("device", DeviceReference<ModbusDevice>{t.device},
-             "Its description, a device file of the kind modbus, relative to this file.");
+             "Its description, a device file of the kind modbus: a ready one's name, or a path "
+             "from this file.");
   v.optional("sensor_lag_s", t.sensor_lag,
              "First-order lag of the sensors on the carrier; averages are freed of it.",
              between(0, 120));
@@ -81,8 +82,14 @@ void describe(Visitor& v, ThermostatConfig& t) {
 template <class Visitor>
 void describe(Visitor& v, MagnetometerConfig& m) {
   describe_instrument(v, m);
-  v.required("device", DeviceReference<HidDevice>{m.device},
-             "Its description, a device file of the kind hid, relative to this file.");
+  v.optional("fitted", m.fitted,
+             "false: there is none. The field is then reckoned from the coils' measured currents, "
+             "their nominal field per ampere and ambient_ut.");
+  v.optional("device", DeviceReference<HidDevice>{m.device},
+             "Its description where it is fitted, a device file of the kind hid: a ready one's "
+             "name, or a path from this file.");
+  v.optional("ambient_ut", m.ambient_ut,
+             "Where none is fitted, the ambient field: up, north, east.");
   MagnetometerCalibration calibration{m.device.calibration_offset_ut, m.device.calibration_matrix};
   v.optional("calibration", calibration,
              "Correction from this instrument's certificate, in place of the device file's.");
@@ -91,8 +98,10 @@ void describe(Visitor& v, MagnetometerConfig& m) {
 template <class Visitor>
 void describe(Visitor& v, CoilConfig& c) {
   describe_instrument(v, c);
-  v.required("device", DeviceReference<ScpiDevice>{c.device},
-             "Its supply's description, a device file of the kind scpi, relative to this file.");
+  v.required(
+      "device", DeviceReference<ScpiDevice>{c.device},
+      "Its supply's description, a device file of the kind scpi: a ready one's name, or a path "
+      "from this file.");
   v.optional("field_ut_per_a", c.field_ut_per_a, "Nominal field at the centre per ampere.",
              above(0));
   v.optional("current_limit_a", c.current_limit, "Largest current of either sign.", above(0));
@@ -103,7 +112,8 @@ void describe(Visitor& v, TurntableConfig& t) {
   describe_instrument(v, t);
   v.optional("motorised", t.motorised, "false: the operator is asked to turn the gyro.");
   v.optional("device", DeviceReference<std::optional<ScpiDevice>>{t.device},
-             "Its description when motorised, a device file of the kind scpi.");
+             "Its description when motorised, a device file of the kind scpi: a ready one's name, "
+             "or a path from this file.");
   v.optional("move_time_s", t.move_time, "Typical time of a rotation, for the plan.", at_least(0));
 }
 
@@ -111,7 +121,8 @@ template <class Visitor>
 void describe(Visitor& v, GyroConfig& g) {
   describe_instrument(v, g);
   v.required("device", DeviceReference<FrameDevice>{g.device},
-             "Its description, a device file of the kind frame, relative to this file.");
+             "Its description, a device file of the kind frame: a ready one's name, or a path "
+             "from this file.");
   v.optional("frame_rate_hz", g.device.frame_rate_hz,
              "Frames a second that this gyro is set to, in place of the device file's.",
              between(0.1, 100000));
@@ -127,7 +138,7 @@ void describe(Visitor& v, AuxiliaryConfig& a) {
   describe_instrument(v, a);
   v.required("device", DeviceReference<SensorDevice>{a.device},
              "Its description, a device file of the kind modbus_sensor, scpi_sensor, hid_sensor or "
-             "line_sensor, relative to this file.");
+             "line_sensor: a ready one's name, or a path from this file.");
 }
 
 template <class Visitor>

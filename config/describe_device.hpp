@@ -192,12 +192,20 @@ void describe(Visitor& v, FrameDevice& d) {
   v.required("rate", d.rate, "The rotation rate.");
   v.optional("temperature", d.temperature, "The gyro's temperature, where frames carry it.");
   v.optional("others", d.others, "The rest of the payload.");
-  v.required("status_offset_bytes", d.status_offset_bytes, "Where the status byte lies.");
-  v.required("status_valid_mask", d.status_valid_mask,
-             "Bits that are all set while the reading is valid.");
-  v.required("sequence_offset_bytes", d.sequence_offset_bytes, "Where the sequence byte lies.");
+  v.optional(
+      "status_offset_bytes", d.status_offset_bytes,
+      "Where the status byte lies. Without it every frame whose check value holds is valid.");
+  v.optional("status_valid_mask", d.status_valid_mask,
+             "Bits of the status that are all set while the reading is valid.");
+  v.required("sequence_offset_bytes", d.sequence_offset_bytes,
+             "Where the frame's counter, its sequence number, begins.");
+  v.optional("sequence_type", d.sequence_type,
+             "How the counter lies in its bytes: uint8, uint16 or uint32, in the frame's byte "
+             "order.");
   v.required("sequence_modulus", d.sequence_modulus,
-             "The sequence counts from 0 to one less than this.", between(2, 256));
+             "The sequence counts from 0 to one less than this: 256 where a byte counts through, "
+             "65536 where 16 bits do.",
+             between(2, 4294967296.0));
   v.required("crc", d.crc, "The check value.");
   v.required("frame_rate_hz", d.frame_rate_hz, "Frames a second.", between(0.1, 100000));
   v.optional("baud", d.baud, "Bits a second on the line, 10 bits a byte.", at_least(300));
@@ -208,6 +216,8 @@ void describe(Visitor& v, FrameDevice& d) {
       above(0));
 }
 
+/// Names that no driver knows and those that it misses, whatever else is wrong.
+bool check_names(const Place& at, const ModbusDevice& device);
 bool check(const Place& at, const ModbusDevice& device);
 bool check(const Place& at, const ScpiDevice& device);
 bool check(const Place& at, const HidDevice& device);

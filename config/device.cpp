@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "config/describe_device.hpp"
+#include "config/nearest_name.hpp"
 #include "config/stated_unit.hpp"
 
 namespace fogbench::config {
@@ -46,8 +47,9 @@ class Layout {
     return true;
   }
   bool claim(const Place& at, const FieldSpec& field) {
-    return check_scale(at, field.scale) &&
-           claim(at / "offset_bytes", field.offset_bytes, size_of(field.type), field.name);
+    const bool scaled = check_scale(at, field.scale);
+    return claim(at / "offset_bytes", field.offset_bytes, size_of(field.type), field.name) &&
+           scaled;
   }
 
  private:
@@ -57,14 +59,14 @@ class Layout {
 
 template <class Named>
 bool check_unique(const Place& at, const std::vector<Named>& list) {
+  bool ok = true;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (list[i].name == list[j].name) {
-        return (at / i / "name").wrong("a name that does not stand twice");
-      }
+    const auto same = [&](const Named& before) { return before.name == list[i].name; };
+    if (std::any_of(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(i), same)) {
+      ok = (at / i / "name").wrong("a name that does not stand twice");
     }
   }
-  return true;
+  return ok;
 }
 
 template <class Named>
@@ -74,16 +76,26 @@ const Named* find_named(const std::vector<Named>& list, std::string_view name) {
   return found == list.end() ? nullptr : &*found;
 }
 
-template <class Named>
-bool check_has(const Place& at, const std::vector<Named>& list,
-               std::initializer_list<std::string_view> names) {
+template <class Named, class Names>
+bool check_has(const Place& at, const std::vector<Named>& list, const Names& names) {
+  std::vector<std::string> missing;
   for (const std::string_view name : names) {
-    if (find_named(list, name) == nullptr) {
-      return at.fail(fmt::format("has no \"{}\"; expected {}", name, fmt::join(names, ", ")));
-    }
+    if (find_named(list, name) == nullptr) missing.push_back(fmt::format("\"{}\"", name));
   }
-  return true;
+  return missing.empty() || at.fail(fmt::format("has no {}; expected {}", fmt::join(missing, ", "),
+                                                fmt::join(names, ", ")));
 }
+
+/// Of a thermostat: what its driver cannot do without, and what it uses where it is there.
+constexpr std::array<std::string_view, 8> kNeededRegisters = {"temperature_working_1",
+                                                              "temperature_working_2",
+                                                              "temperature_control",
+                                                              "temperature_ambient",
+                                                              "target",
+                                                              "mode",
+                                                              "boost_power",
+                                                              "normal_power"};
+constexpr std::array<std::string_view, 2> kFurtherRegisters = {"working_target", "status"};
 
 bool check_register(const Place& at, const ModbusDevice& device, std::size_t index) {
   const RegisterSpec& r = device.registers[index];
@@ -117,28 +129,35 @@ bool fits(NumberType type, double raw) {
   }
 }
 
-bool check_modes(const Place& at, const ModbusDevice& device, const RegisterSpec& mode) {
+bool check_mode_names(const Place& at, const std::map<std::string, double>& modes) {
   constexpr std::array<std::string_view, 3> kModes = {"off", "boost", "normal"};
-  for (const auto& [name, value] : device.modes) {
+  bool ok = true;
+  for (const auto& [name, value] : modes) {
     if (std::find(kModes.begin(), kModes.end(), name) == kModes.end()) {
-      return (at / name).fail("unknown mode; expected off, boost and normal");
+      ok = (at / name).fail("unknown mode; expected off, boost and normal");
     }
-    if (!fits(mode.type, (value - mode.offset) / mode.scale)) {
-      return (at / name).wrong("a number that the register mode can hold");
-    }
-  }
-  for (const std::string_view name : kModes) {
-    const auto found = device.modes.find(std::string(name));
-    if (found == device.modes.end()) {
-      return at.fail(fmt::format("has no \"{}\"; expected off, boost and normal", name));
-    }
-    for (const auto& [other, value] : device.modes) {
-      if (other != name && value == found->second) {
-        return (at / name).wrong(fmt::format("a number that differs from that of {}", other));
+    for (const auto& [other, its] : modes) {
+      if (other < name && its == value) {
+        ok = (at / name).wrong(fmt::format("a number that differs from that of {}", other));
       }
     }
   }
-  return true;
+  for (const std::string_view name : kModes) {
+    if (!modes.contains(std::string(name))) {
+      ok = at.fail(fmt::format("has no \"{}\"; expected off, boost and normal", name));
+    }
+  }
+  return ok;
+}
+
+bool check_mode_values(const Place& at, const ModbusDevice& device, const RegisterSpec& mode) {
+  bool ok = true;
+  for (const auto& [name, value] : device.modes) {
+    if (!fits(mode.type, (value - mode.offset) / mode.scale)) {
+      ok = (at / name).wrong("a number that the register mode can hold");
+    }
+  }
+  return ok;
 }
 
 /// A supply's self test swings its output to the maximum and magnetises the gyro's shield.
@@ -151,59 +170,76 @@ bool check_no_self_test(const Place& at, std::string command) {
 
 }  // namespace
 
-bool check(const Place& at, const ModbusDevice& d) {
-  const Place registers = at / "registers";
-  if (!check_unique(registers, d.registers)) return false;
+bool check_names(const Place& at, const ModbusDevice& d) {
+  std::vector<std::string_view> known(kNeededRegisters.begin(), kNeededRegisters.end());
+  known.insert(known.end(), kFurtherRegisters.begin(), kFurtherRegisters.end());
+  const bool whole = std::all_of(kNeededRegisters.begin(), kNeededRegisters.end(), [&](auto name) {
+    return find_named(d.registers, name) != nullptr;
+  });
   bool ok = true;
   for (std::size_t i = 0; i < d.registers.size(); ++i) {
-    ok = check_register(registers / i, d, i) && ok;
+    const std::string& name = d.registers[i].name;
+    if (name.empty() || std::find(known.begin(), known.end(), name) != known.end()) continue;
+    // Where nothing lacks, a register more is for people to look at.
+    const std::string_view near = nearest_name(name, known);
+    const bool misspelt = !near.empty() && find_named(d.registers, near) == nullptr;
+    if (!misspelt && whole) continue;
+    ok = (at / "registers" / i / "name")
+             .fail(fmt::format("unknown register \"{}\"; {}", name,
+                               misspelt ? fmt::format("did you mean \"{}\"?", near)
+                                        : fmt::format("known: {}", fmt::join(known, ", "))));
   }
-  if (!ok) return false;
-  if (!check_has(registers, d.registers,
-                 {"temperature_working_1", "temperature_working_2", "temperature_control",
-                  "temperature_ambient", "target", "mode", "boost_power", "normal_power"})) {
-    return false;
+  if (!d.registers.empty()) {
+    ok = check_has(at / "registers", d.registers, kNeededRegisters) && ok;
+  }
+  if (!d.modes.empty()) ok = check_mode_names(at / "modes", d.modes) && ok;
+  return ok;
+}
+
+bool check(const Place& at, const ModbusDevice& d) {
+  const Place registers = at / "registers";
+  bool ok = check_unique(registers, d.registers);
+  for (std::size_t i = 0; i < d.registers.size(); ++i) {
+    ok = check_register(registers / i, d, i) && ok;
   }
   for (std::size_t i = 0; i < d.registers.size(); ++i) {
     const RegisterSpec& r = d.registers[i];
     const bool commanded = r.name == "target" || r.name == "mode";
     if (commanded && r.access != Access::kReadWrite) {
-      return (registers / i / "access").wrong("\"read_write\": it is written and read back");
-    }
-    if (r.access == Access::kWrite) {
-      return (registers / i / "access").wrong("a register that can be read");
+      ok = (registers / i / "access").wrong("\"read_write\": it is written and read back");
+    } else if (r.access == Access::kWrite) {
+      ok = (registers / i / "access").wrong("a register that can be read");
     }
   }
   if (d.target_minimum >= d.target_maximum) {
-    return (at / "target_minimum_c")
-        .wrong(fmt::format("less than target_maximum_c {}", d.target_maximum.value));
+    ok = (at / "target_minimum_c")
+             .wrong(fmt::format("less than target_maximum_c {}", d.target_maximum.value));
   }
-  return check_modes(at / "modes", d, *find_named(d.registers, "mode"));
+  const RegisterSpec* const mode = find_named(d.registers, "mode");
+  return (mode == nullptr || check_mode_values(at / "modes", d, *mode)) && ok;
 }
 
 bool check(const Place& at, const ScpiDevice& d) {
-  if (d.set.find("{value}") == std::string::npos) {
-    return (at / "set").wrong("a command with {value} where the number goes");
-  }
-  if (!check_scale(at, d.scale)) return false;
-  if (d.minimum >= d.maximum) {
-    return (at / "minimum").wrong(fmt::format("less than the maximum {}", d.maximum));
-  }
+  bool ok = d.set.find("{value}") != std::string::npos ||
+            (at / "set").wrong("a command with {value} where the number goes");
+  ok = check_scale(at, d.scale) && ok;
   const StatedUnit* const unit = find_unit(d.unit);
   const bool current = unit != nullptr && unit->dimension == Dimension::kCurrent;
-  if (current && (d.minimum > 0 || d.maximum < 0)) {
-    return (at / (d.minimum > 0 ? "minimum" : "maximum"))
-        .wrong("a range with 0 A in it, where the safe state is");
+  if (d.minimum >= d.maximum) {
+    ok = (at / "minimum").wrong(fmt::format("less than the maximum {}", d.maximum));
+  } else if (current && (d.minimum > 0 || d.maximum < 0)) {
+    ok = (at / (d.minimum > 0 ? "minimum" : "maximum"))
+             .wrong("a range with 0 A in it, where the safe state is");
   }
   if (d.output_on.empty() != d.output_off.empty()) {
-    return (at / (d.output_on.empty() ? "output_on" : "output_off"))
-        .wrong("output_on and output_off both, or neither");
+    ok = (at / (d.output_on.empty() ? "output_on" : "output_off"))
+             .wrong("output_on and output_off both, or neither");
   }
   const Place initialise = at / "initialise";
   for (std::size_t i = 0; i < d.initialise.size(); ++i) {
-    if (!check_no_self_test(initialise / i, d.initialise[i])) return false;
+    ok = check_no_self_test(initialise / i, d.initialise[i]) && ok;
   }
-  return true;
+  return ok;
 }
 
 bool is_invertible(const std::array<std::array<double, 3>, 3>& m) {
@@ -215,26 +251,29 @@ bool is_invertible(const std::array<std::array<double, 3>, 3>& m) {
 
 /// The count of reports and the status enter as they come: there is nothing to scale.
 bool check_counts(const Place& fields, const std::vector<FieldSpec>& list) {
+  bool ok = true;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const FieldSpec& f = list[i];
     if ((f.name == "sequence" || f.name == "status") && (f.scale != 1.0 || f.offset != 0.0)) {
-      return (fields / i / (f.scale != 1.0 ? "scale" : "offset"))
-          .wrong(fmt::format("none: {} is a count", f.name));
+      ok = (fields / i / (f.scale != 1.0 ? "scale" : "offset"))
+               .wrong(fmt::format("none: {} is a count", f.name));
     }
   }
-  return true;
+  return ok;
 }
 
 bool check(const Place& at, const HidDevice& d) {
   const Place fields = at / "fields";
-  if (!check_unique(fields, d.fields) || !check_counts(fields, d.fields)) return false;
-  if (!check_has(fields, d.fields, {"field_x", "field_y", "field_z"})) return false;
+  constexpr std::array<std::string_view, 3> kAxes = {"field_x", "field_y", "field_z"};
+  bool ok = check_unique(fields, d.fields);
+  ok = check_counts(fields, d.fields) && ok;
+  ok = check_has(fields, d.fields, kAxes) && ok;
   Layout layout(d.report_bytes, "report");
-  if (!layout.claim(at / "report_id", 0, 1, "the report id")) return false;
+  ok = layout.claim(at / "report_id", 0, 1, "the report id") && ok;
   for (std::size_t i = 0; i < d.fields.size(); ++i) {
-    if (!layout.claim(fields / i, d.fields[i])) return false;
+    ok = layout.claim(fields / i, d.fields[i]) && ok;
   }
-  return true;
+  return ok;
 }
 
 bool check_frame_rate(const Place& at, const FrameDevice& d) {
@@ -245,40 +284,63 @@ bool check_frame_rate(const Place& at, const FrameDevice& d) {
                                 d.frame_bytes, d.baud));
 }
 
-bool check(const Place& at, const FrameDevice& d) {
-  const Place crc = at / "crc";
+bool check_sequence(const Place& at, const FrameDevice& d) {
+  const bool counts = d.sequence_type == NumberType::kUint8 ||
+                      d.sequence_type == NumberType::kUint16 ||
+                      d.sequence_type == NumberType::kUint32;
+  if (!counts) return (at / "sequence_type").wrong("uint8, uint16 or uint32: it counts");
+  const std::uint64_t most = std::uint64_t{1} << (8 * size_of(d.sequence_type));
+  return d.sequence_modulus <= most ||
+         (at / "sequence_modulus").wrong(fmt::format("at most {}, or a wider sequence_type", most));
+}
+
+bool check_crc(const Place& crc, const FrameDevice& d) {
   const std::uint8_t width = d.crc.width_bits;
   if (width != 8 && width != 16 && width != 32) return (crc / "width_bits").wrong("8, 16 or 32");
   const std::uint64_t values = std::uint64_t{1} << width;
+  bool ok = true;
   for (const auto& [key, value] :
        {std::pair{"polynomial", d.crc.polynomial}, std::pair{"initial", d.crc.initial},
         std::pair{"final_xor", d.crc.final_xor}}) {
-    if (value >= values) return (crc / key).wrong(fmt::format("a number of {} bits", width));
+    if (value >= values) ok = (crc / key).wrong(fmt::format("a number of {} bits", width));
   }
-  if (d.crc.polynomial == 0) return (crc / "polynomial").wrong("a number other than 0");
-
-  Layout layout(d.frame_bytes, "frame");
-  if (!layout.claim(at / "header", 0, d.header.size(), "the header") ||
-      !layout.claim(at / "rate", d.rate) ||
-      !layout.claim(at / "status_offset_bytes", d.status_offset_bytes, 1, "the status") ||
-      !layout.claim(at / "sequence_offset_bytes", d.sequence_offset_bytes, 1, "the sequence") ||
-      !layout.claim(crc / "offset_bytes", d.crc.offset_bytes, width / 8U, "the check value")) {
-    return false;
-  }
-  if (d.temperature && !layout.claim(at / "temperature", *d.temperature)) return false;
-  const Place others = at / "others";
-  for (std::size_t i = 0; i < d.others.size(); ++i) {
-    if (!layout.claim(others / i, d.others[i])) return false;
-  }
+  if (d.crc.polynomial == 0) ok = (crc / "polynomial").wrong("a number other than 0");
   const std::size_t covered_end = std::size_t{d.crc.first_byte} + d.crc.count_bytes;
   const std::size_t value_end = d.crc.offset_bytes + width / 8U;
   if (covered_end > d.frame_bytes) {
-    return (crc / "count_bytes").wrong(fmt::format("the check to cover bytes of the frame only"));
+    ok = (crc / "count_bytes").wrong("the check to cover bytes of the frame only");
+  } else if (d.crc.first_byte < value_end && d.crc.offset_bytes < covered_end) {
+    ok = (crc / "count_bytes").wrong("a check that does not cover its own value");
   }
-  if (d.crc.first_byte < value_end && d.crc.offset_bytes < covered_end) {
-    return (crc / "count_bytes").wrong("a check that does not cover its own value");
+  return ok;
+}
+
+bool check(const Place& at, const FrameDevice& d) {
+  const Place crc = at / "crc";
+  bool ok = check_crc(crc, d);
+  ok = check_sequence(at, d) && ok;
+  if (d.status_offset_bytes.has_value() != (d.status_valid_mask != 0)) {
+    ok = (at / (d.status_offset_bytes ? "status_valid_mask" : "status_offset_bytes"))
+             .wrong("status_offset_bytes and a status_valid_mask other than 0, or neither");
   }
-  return check_frame_rate(at, d);
+  Layout layout(d.frame_bytes, "frame");
+  ok = layout.claim(at / "header", 0, d.header.size(), "the header") && ok;
+  ok = layout.claim(at / "rate", d.rate) && ok;
+  if (d.status_offset_bytes) {
+    ok = layout.claim(at / "status_offset_bytes", *d.status_offset_bytes, 1, "the status") && ok;
+  }
+  ok = layout.claim(at / "sequence_offset_bytes", d.sequence_offset_bytes, size_of(d.sequence_type),
+                    "the sequence") &&
+       ok;
+  ok = layout.claim(crc / "offset_bytes", d.crc.offset_bytes, d.crc.width_bits / 8U,
+                    "the check value") &&
+       ok;
+  if (d.temperature) ok = layout.claim(at / "temperature", *d.temperature) && ok;
+  const Place others = at / "others";
+  for (std::size_t i = 0; i < d.others.size(); ++i) {
+    ok = layout.claim(others / i, d.others[i]) && ok;
+  }
+  return check_frame_rate(at, d) && ok;
 }
 
 bool Codec<std::vector<std::uint8_t>>::read(const Place& at, std::vector<std::uint8_t>& out,

@@ -133,10 +133,11 @@ struct FrameDevice {
   FieldSpec rate;
   std::optional<FieldSpec> temperature;
   std::vector<FieldSpec> others;  ///< the rest of the payload, named for the documents
-  std::uint16_t status_offset_bytes = 0;
-  std::uint8_t status_valid_mask = 0;  ///< all these bits set: the reading is valid
+  std::optional<std::uint16_t> status_offset_bytes;  ///< none: every frame is valid
+  std::uint8_t status_valid_mask = 0;                ///< all these bits set: the reading is valid
   std::uint16_t sequence_offset_bytes = 0;
-  std::uint16_t sequence_modulus = 128;  ///< counts 0 ... modulus - 1
+  NumberType sequence_type = NumberType::kUint8;
+  std::uint64_t sequence_modulus = 128;  ///< counts 0 ... modulus - 1
   CrcSpec crc;
   double frame_rate_hz = 1000.0;
   std::uint32_t baud = 921600;

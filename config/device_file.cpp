@@ -29,7 +29,8 @@ bool read_kind(std::string_view kind, const Place& at, DeviceFile& out,
   const auto read = [&]<std::size_t K>(std::integral_constant<std::size_t, K> /*which*/) {
     using Device = std::variant_alternative_t<K, DeviceFile>;
     auto& device = out.emplace<K>();
-    ok = Codec<Device>::read(at, device, {}) && take_to_house_units(at, device);
+    ok = Codec<Device>::read(at, device, {});
+    ok = take_to_house_units(at, device) && ok;
   };
   const bool known =
       ((kDeviceKinds[I] == kind && (read(std::integral_constant<std::size_t, I>{}), true)) || ...);

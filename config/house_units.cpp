@@ -85,6 +85,7 @@ bool take_to_house_units(const Place& at, ModbusDevice& device) {
 }
 
 bool take_to_house_units(const Place& at, ScpiDevice& device) {
+  if (device.unit.empty()) return false;  // it was missed already
   const StatedUnit* const unit = find_unit(device.unit);
   if (unit == nullptr ||
       (unit->dimension != Dimension::kCurrent && unit->dimension != Dimension::kAngle)) {

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string ready_names(const fs::path& folder) {
+std::string names_in(const fs::path& folder) {
   std::error_code error;
   std::vector<std::string> known;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
@@ -48,6 +48,11 @@ Result<fs::path> config_directory() {
                "name it in FOGBENCH_CONFIG_DIR"};
 }
 
+std::string ready_names(const std::string& kind) {
+  const auto directory = config_directory();
+  return directory ? names_in(*directory / kind) : std::string();
+}
+
 Result<fs::path> find_ready(const std::string& kind, const std::string& name) {
   const auto directory = config_directory();
   if (!directory) return directory.error();
@@ -57,7 +62,7 @@ Result<fs::path> find_ready(const std::string& kind, const std::string& name) {
   const bool plain = name.find('/') == std::string::npos;
   if (plain && fs::is_regular_file(candidate, error)) return candidate;
   return Error{ErrorCode::kBadInput,
-               fmt::format("{}: none of the ready {} ({})", name, kind, ready_names(folder))};
+               fmt::format("{}: none of the ready {} ({})", name, kind, names_in(folder))};
 }
 
 Result<fs::path> find_config(const std::string& kind, const std::string& name) {
@@ -78,7 +83,7 @@ Result<fs::path> find_config(const std::string& kind, const std::string& name) {
   }
 
   return Error{ErrorCode::kBadInput, fmt::format("{}: no such file, and none of the ready {} ({})",
-                                                 name, kind, ready_names(*directory / kind))};
+                                                 name, kind, names_in(*directory / kind))};
 }
 
 }  // namespace fogbench::config

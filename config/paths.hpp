@@ -21,4 +21,7 @@ Result<std::filesystem::path> find_config(const std::string& kind, const std::st
 /// The file of a ready one: never a path. kBadInput with the names that exist.
 Result<std::filesystem::path> find_ready(const std::string& kind, const std::string& name);
 
+/// Their names, sorted, with commas between.
+std::string ready_names(const std::string& kind);
+
 }  // namespace fogbench::config

@@ -39,7 +39,8 @@ Result<std::vector<fs::path>> files_of_bench(const fs::path& file) {
   std::set<fs::path> devices;
   const auto take = [&](const auto& instrument) {
     if (!instrument.is_object() || !instrument.contains("device")) return;
-    devices.insert(file.parent_path() / instrument["device"].template get<std::string>());
+    const auto device = config::device_file(file, instrument["device"].template get<std::string>());
+    if (device) devices.insert(*device);  // the bench has been read: it is there
   };
   for (const auto& part : *bench) {
     take(part);
@@ -103,8 +104,8 @@ Result<bool> is_simulated(const config::BenchConfig& bench) {
       {"thermostat", &bench.thermostat},
       {"coil_horizontal", &bench.coil_horizontal},
       {"coil_vertical", &bench.coil_vertical},
-      {"magnetometer", &bench.magnetometer},
       {"gyro", &bench.gyro}};
+  if (bench.magnetometer.fitted) instruments.emplace_back("magnetometer", &bench.magnetometer);
   if (bench.turntable.motorised) instruments.emplace_back("turntable", &bench.turntable);
   for (const config::AuxiliaryConfig& sensor : bench.auxiliary) {
     instruments.emplace_back(sensor.name.c_str(), &sensor);

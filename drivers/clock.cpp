@@ -41,6 +41,7 @@ Clock::Duration SteadyClock::calendar_offset() const {
 }
 
 void SteadyClock::follow_calendar() {
+  if (speed_ != 1.0) return;  // it has one of its own
   wall_at_zero_ += std::chrono::floor<std::chrono::milliseconds>(calendar_offset());
 }
 

@@ -33,8 +33,8 @@ namespace fogbench::drivers {
 
 class FrameCounter {
  public:
-  FrameCounter(std::uint16_t modulus, double frame_rate_hz)
-      : modulus_(modulus), frame_rate_hz_(frame_rate_hz) {}
+  FrameCounter(std::uint64_t modulus, double frame_rate_hz)
+      : modulus_(static_cast<std::int64_t>(modulus)), frame_rate_hz_(frame_rate_hz) {}
 
   /// The provisional index of a frame with this sequence number, which must be below the modulus.
   /// `periods_skipped`: how many frames' worth of bytes were thrown away just before it.

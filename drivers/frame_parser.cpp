@@ -40,9 +40,11 @@ Status check_layout(const config::FrameDevice& device) {
         fmt::format("{}: header of {} bytes in a frame of {}, expected 1 ... 8 in 8 ... 4096",
                     device.name, device.header.size(), size)};
   }
-  if (device.sequence_modulus < 2 || device.sequence_modulus > 256) {
-    return Error{ErrorCode::kBadInput, fmt::format("{}: sequence modulus {}, expected 2 ... 256",
-                                                   device.name, device.sequence_modulus)};
+  const std::size_t sequence_bytes = byte_count(device.sequence_type);
+  const std::uint64_t most = std::uint64_t{1} << (8 * sequence_bytes);
+  if (device.sequence_modulus < 2 || device.sequence_modulus > most) {
+    return Error{ErrorCode::kBadInput, fmt::format("{}: sequence modulus {}, expected 2 ... {}",
+                                                   device.name, device.sequence_modulus, most)};
   }
   if (!(device.frame_rate_hz > 0)) {
     return Error{ErrorCode::kBadInput, fmt::format("{}: frame rate {} Hz, expected more than 0",
@@ -55,8 +57,8 @@ Status check_layout(const config::FrameDevice& device) {
   }
   for (const Status& status :
        {field(device.rate), device.temperature ? field(*device.temperature) : Status{},
-        outside("status", device.status_offset_bytes, 1),
-        outside("sequence", device.sequence_offset_bytes, 1),
+        device.status_offset_bytes ? outside("status", *device.status_offset_bytes, 1) : Status{},
+        outside("sequence", device.sequence_offset_bytes, sequence_bytes),
         outside("checked part", crc.first_byte, crc.count_bytes),
         outside("check value", crc.offset_bytes, crc.width_bits / 8u)}) {
     if (!status) return status;
@@ -70,9 +72,11 @@ FrameParser::FrameParser(const config::FrameDevice& device)
       frame_bytes_(device.frame_bytes),
       byte_order_(device.byte_order),
       rate_(device.rate),
-      status_offset_(device.status_offset_bytes),
-      status_mask_(device.status_valid_mask),
+      // Without a status no bit of any byte is asked for.
+      status_offset_(device.status_offset_bytes.value_or(0)),
+      status_mask_(device.status_offset_bytes ? device.status_valid_mask : 0),
       sequence_offset_(device.sequence_offset_bytes),
+      sequence_bytes_(byte_count(device.sequence_type)),
       modulus_(device.sequence_modulus),
       most_repeats_(repeats_within(device)),
       buffer_(kBufferBytes) {
@@ -125,7 +129,8 @@ void FrameParser::parse(std::size_t count, GyroBlock& block) {
     const std::size_t periods_skipped =
         unframed_bytes_ == 0 ? 0 : (unframed_bytes_ + frame_bytes_ / 2) / frame_bytes_;
     unframed_bytes_ = 0;
-    const std::uint32_t sequence = frame[sequence_offset_];
+    const std::uint32_t sequence =
+        load_bytes(frame + sequence_offset_, sequence_bytes_, byte_order_);
     if (sequence >= modulus_) {
       ++statistics_.frames_invalid;
       continue;

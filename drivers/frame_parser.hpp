@@ -26,7 +26,7 @@
 namespace fogbench::drivers {
 
 /// kBadInput when a field, the status, the sequence or the check lies outside the frame, when the
-/// header is not 1 to 8 bytes, or the sequence does not fit its byte.
+/// header is not 1 to 8 bytes, or the sequence does not fit its bytes.
 Status check_layout(const config::FrameDevice& device);
 
 class FrameParser {
@@ -98,8 +98,8 @@ class FrameParser {
   std::optional<Field> temperature_;
   std::size_t status_offset_;
   std::uint8_t status_mask_;
-  std::size_t sequence_offset_;
-  std::uint32_t modulus_;
+  std::size_t sequence_offset_, sequence_bytes_;
+  std::uint64_t modulus_;
   std::uint32_t most_repeats_;  ///< of the rate in frames one after the other
 
   float last_rate_ = std::numeric_limits<float>::quiet_NaN();

@@ -123,6 +123,8 @@ class Operator {
   virtual Result<bool> confirm(const std::string& prompt) = 0;
   /// Whether they can resume a run that has paused by itself.
   virtual bool can_resume() const { return false; }
+  /// Who answers, for the record; empty: whoever it was puts it there.
+  virtual std::string name() const { return {}; }
 };
 
 /// Good frames of the stream, one entry each in every vector. `index` counts frames since the
@@ -147,6 +149,11 @@ struct StreamStatistics {
   std::uint64_t frames_missing = 0;  ///< by sequence number (bad and invalid ones included)
   std::uint64_t bytes_skipped = 0;   ///< thrown away while looking for a header
 
+  StreamStatistics operator+(const StreamStatistics& more) const {
+    return {frames_good + more.frames_good,       frames_bad_checksum + more.frames_bad_checksum,
+            frames_invalid + more.frames_invalid, frames_repeated + more.frames_repeated,
+            frames_missing + more.frames_missing, bytes_skipped + more.bytes_skipped};
+  }
   /// What has come on top of `before`, an earlier state of the same line.
   StreamStatistics operator-(const StreamStatistics& before) const {
     return {
@@ -164,6 +171,9 @@ struct FrameRate {
 
 class Gyro : public Instrument {
  public:
+  /// As begin(), for another gyro on the line, or the same one switched on again, at that moment:
+  /// from there its frames are counted, and their times.
+  virtual Status begin_anew(Clock::Instant /*switched_on*/) { return begin(); }
   /// Appends every good frame that has arrived by now to `out` (nothing new: appends nothing).
   /// kTimeout when the stream has been silent for longer than it may.
   virtual Status read(GyroBlock& out) = 0;

@@ -8,6 +8,7 @@
 #include "drivers/auxiliary_sensor.hpp"
 #include "drivers/hid_magnetometer.hpp"
 #include "drivers/modbus_thermostat.hpp"
+#include "drivers/reckoned_field.hpp"
 #include "drivers/scpi_coil_supply.hpp"
 #include "drivers/serial_gyro.hpp"
 #include "drivers/turntables.hpp"
@@ -36,7 +37,8 @@ Result<Bench> attach_bench(const config::BenchConfig& config, Transports transpo
        {check_connected("thermostat", transports.thermostat != nullptr),
         check_connected("coil_horizontal", transports.coil_horizontal != nullptr),
         check_connected("coil_vertical", transports.coil_vertical != nullptr),
-        check_connected("magnetometer", transports.magnetometer != nullptr),
+        check_connected("magnetometer",
+                        transports.magnetometer != nullptr || !config.magnetometer.fitted),
         check_connected("turntable",
                         transports.turntable != nullptr || !config.turntable.motorised),
         check_connected("gyro", transports.gyro != nullptr)}) {
@@ -56,17 +58,21 @@ Result<Bench> attach_bench(const config::BenchConfig& config, Transports transpo
                                            std::move(transports.thermostat), clock),
                   bench.thermostat);
   }
-  if (status) {
-    status = take(HidMagnetometer::attach("magnetometer", config.magnetometer.device,
-                                          std::move(transports.magnetometer), clock),
-                  bench.magnetometer);
-  }
   if (status && config.turntable.motorised) {
     status = take(ScpiTurntable::attach("turntable", config.turntable,
                                         std::move(transports.turntable), clock),
                   bench.turntable);
   } else {
-    bench.turntable = std::make_unique<ManualTurntable>("turntable", operator_);
+    bench.turntable = std::make_unique<ManualTurntable>("turntable", operator_,
+                                                        std::move(transports.turned_by_hand));
+  }
+  if (status && config.magnetometer.fitted) {
+    status = take(HidMagnetometer::attach("magnetometer", config.magnetometer.device,
+                                          std::move(transports.magnetometer), clock),
+                  bench.magnetometer);
+  } else if (status) {
+    bench.magnetometer = std::make_unique<ReckonedField>(
+        config, *bench.coil_horizontal, *bench.coil_vertical, *bench.turntable, clock);
   }
   if (status) {
     status = take(SerialGyro::attach("gyro", config.gyro, std::move(transports.gyro), clock),

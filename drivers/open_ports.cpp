@@ -128,7 +128,9 @@ Result<Transports> open_ports(const config::BenchConfig& config, Clock& clock) {
   Status status = take("coil_horizontal", open(config.coil_horizontal), t.coil_horizontal);
   if (status) status = take("coil_vertical", open(config.coil_vertical), t.coil_vertical);
   if (status) status = take("thermostat", open(config.thermostat), t.thermostat);
-  if (status) status = take("magnetometer", open(config.magnetometer), t.magnetometer);
+  if (status && config.magnetometer.fitted) {
+    status = take("magnetometer", open(config.magnetometer), t.magnetometer);
+  }
   if (status && config.turntable.motorised) {
     status =
         take("turntable", open_port(*config.turntable.device, config.turntable.connection, clock),

@@ -237,21 +237,25 @@ ProbeReport probe(const config::FrameDevice& device, SerialTransport& transport,
   for (const FieldSpec& field : device.others) {
     report.rows.push_back(row_of(field, device.byte_order, newest));
   }
-  const std::uint8_t status = newest[device.status_offset_bytes];
-  const bool valid = (status & device.status_valid_mask) == device.status_valid_mask;
-  report.rows.push_back({"status",
-                         fmt::format("byte {}", device.status_offset_bytes),
-                         fmt::format("{:02X}", status),
-                         {},
-                         {},
-                         valid ? "" : "says that the reading is not valid"});
-  const std::uint8_t sequence = newest[device.sequence_offset_bytes];
-  report.rows.push_back({"sequence",
-                         fmt::format("byte {}", device.sequence_offset_bytes),
-                         fmt::format("{:02X}", sequence),
-                         static_cast<double>(sequence),
-                         {},
-                         sequence < device.sequence_modulus ? "" : "is beyond its modulus"});
+  if (device.status_offset_bytes) {
+    const std::uint8_t status = newest[*device.status_offset_bytes];
+    const bool valid = (status & device.status_valid_mask) == device.status_valid_mask;
+    report.rows.push_back({"status",
+                           fmt::format("byte {}", *device.status_offset_bytes),
+                           fmt::format("{:02X}", status),
+                           {},
+                           {},
+                           valid ? "" : "says that the reading is not valid"});
+  }
+  FieldSpec counter;
+  counter.name = "sequence";
+  counter.offset_bytes = device.sequence_offset_bytes;
+  counter.type = device.sequence_type;
+  ProbeRow sequence = row_of(counter, device.byte_order, newest);
+  if (sequence.value && *sequence.value >= static_cast<double>(device.sequence_modulus)) {
+    sequence.problem = "is beyond its modulus";
+  }
+  report.rows.push_back(std::move(sequence));
   return report;
 }
 

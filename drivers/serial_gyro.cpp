@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "drivers/named_error.hpp"
@@ -31,6 +32,7 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 20;
 SerialGyro::SerialGyro(std::string name, const config::GyroConfig& config,
                        std::unique_ptr<SerialTransport> transport, Clock& clock)
     : name_(std::move(name)),
+      device_(config.device),
       identity_(config.device.name),
       frame_rate_hz_(config.device.frame_rate_hz),
       bytes_per_s_(config.device.frame_rate_hz * config.device.frame_bytes),
@@ -72,6 +74,20 @@ Status SerialGyro::begin() {
   return {};
 }
 
+Status SerialGyro::begin_anew(Clock::Instant switched_on) {
+  before_ = statistics_;
+  parser_ = FrameParser(device_);
+  meter_ = FrameRateMeter(frame_rate_hz_);
+  unheard_ = 0;
+  last_read_ = clock_.now();
+  bytes_since_good_ = 0;
+  if (Status begun = begin(); !begun) return begun;
+  const double earlier_s = to_seconds(first_sample_ - switched_on);
+  unheard_ = std::max<std::int64_t>(0, std::llround(earlier_s * frame_rate_hz_ - 0.5));
+  first_sample_ -= from_seconds(static_cast<double>(unheard_) / frame_rate_hz_);
+  return {};
+}
+
 Result<bool> SerialGyro::take(GyroBlock& out) {
   const Clock::Instant now = clock_.now();
   const double due_bytes = to_seconds(now - std::exchange(last_read_, now)) * bytes_per_s_;
@@ -89,6 +105,7 @@ Result<bool> SerialGyro::take(GyroBlock& out) {
 
 Status SerialGyro::read(GyroBlock& out) {
   const std::uint64_t good_before = parser_.statistics().frames_good;
+  const std::size_t entries_before = out.index.size();
   auto empty = take(out);
   Clock::Instant now = clock_.now();
   for (int looks = 0; looks < kMostLooks && empty && *empty && parser_.misses_turns(now);
@@ -99,6 +116,8 @@ Status SerialGyro::read(GyroBlock& out) {
   if (empty && *empty) meter_.look(now, parser_.counted());
   const Status failure = empty ? Status{} : empty.error();
   parser_.settle(empty && *empty ? std::optional(now) : std::nullopt, out);
+  for (std::size_t i = entries_before; i < out.index.size(); ++i) out.index[i] += unheard_;
+  statistics_ = before_ + parser_.statistics();
   if (!failure) return failure;
   if (parser_.statistics().frames_good > good_before) {
     last_good_ = now;

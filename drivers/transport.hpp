@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -77,7 +78,7 @@ using SensorTransport =
                  std::unique_ptr<HidTransport>, std::unique_ptr<SerialTransport>>;
 
 /// Everything that a bench is reached through. The turntable's is null when it is the operator's
-/// hand.
+/// hand, the magnetometer's when there is none.
 struct Transports {
   std::unique_ptr<ModbusTransport> thermostat;
   std::unique_ptr<MessageTransport> coil_horizontal;
@@ -86,6 +87,11 @@ struct Transports {
   std::unique_ptr<MessageTransport> turntable;
   std::unique_ptr<SerialTransport> gyro;
   std::vector<SensorTransport> auxiliary;  ///< in the order of the bench file
+  /// Of a simulated bench: the gyro turns to that azimuth, deg, when the operator says that it has
+  /// been turned. Empty where he really turns it.
+  std::function<void(double)> turned_by_hand;
+  /// Of a simulated bench: another gyro of the same kind is put on, and switched on now.
+  std::function<void()> exchange_gyro;
 };
 
 }  // namespace fogbench::drivers

@@ -76,6 +76,7 @@ Status ManualTurntable::rotate_to(Degree azimuth) {
         fmt::format("{}: the operator declined to turn the gyro to {} deg", name_, azimuth.value)};
   }
   azimuth_ = azimuth;
+  if (turned_) turned_(azimuth.value);
   return {};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The turntable: motorised, spoken to in SCPI, or the operator's hand.
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -41,8 +42,10 @@ class ScpiTurntable final : public Turntable {
 
 class ManualTurntable final : public Turntable {
  public:
-  /// The gyro is mounted at azimuth 0. `asked` must outlive the turntable.
-  ManualTurntable(std::string name, Operator& asked) : name_(std::move(name)), operator_(asked) {}
+  /// The gyro is mounted at azimuth 0. `asked` must outlive the turntable; `turned`, if any, is
+  /// told of every turn that he has made.
+  ManualTurntable(std::string name, Operator& asked, std::function<void(double)> turned = {})
+      : name_(std::move(name)), operator_(asked), turned_(std::move(turned)) {}
 
   Result<std::string> identity() override { return std::string("turned by the operator"); }
   /// Asks for it and believes the answer; kAborted when the operator declines. Asks for nothing
@@ -53,6 +56,7 @@ class ManualTurntable final : public Turntable {
  private:
   std::string name_;
   Operator& operator_;
+  std::function<void(double)> turned_;
   Degree azimuth_{0.0};
 };
 

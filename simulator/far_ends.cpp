@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <memory>
 #include <string>
@@ -12,12 +11,12 @@
 namespace fogbench::simulator {
 namespace {
 
-constexpr std::array<std::string_view, 6> kDevices = {
-    "thermostat", "coil_horizontal", "coil_vertical", "magnetometer", "turntable", "gyro"};
-
 Status check_devices(const std::vector<config::FaultSpec>& faults,
                      const config::BenchConfig& bench) {
-  std::vector<std::string_view> devices(kDevices.begin(), kDevices.end());
+  std::vector<std::string_view> devices{"thermostat", "coil_horizontal", "coil_vertical"};
+  if (bench.magnetometer.fitted) devices.emplace_back("magnetometer");
+  if (bench.turntable.motorised) devices.emplace_back("turntable");
+  devices.emplace_back("gyro");
   for (const auto& sensor : bench.auxiliary) devices.push_back(sensor.name);
   for (std::size_t i = 0; i < faults.size(); ++i) {
     if (std::find(devices.begin(), devices.end(), faults[i].device) != devices.end()) continue;
@@ -104,12 +103,6 @@ void FarEnds::set_fault(std::string_view device, FaultKind kind, bool on) {
 Result<FarEnds> make_far_ends(const config::BenchConfig& config,
                               const config::ScenarioConfig& scenario, std::uint64_t seed,
                               drivers::Clock& clock, drivers::Clock::Duration late_by) {
-  if (!config.turntable.motorised || !config.turntable.device) {
-    return Error{ErrorCode::kBadInput,
-                 "bench: /turntable/motorised is false, expected true: nobody turns the simulated "
-                 "gyro by hand; fogbench plan shows a procedure on this bench, and a copy of it "
-                 "with the turntable of the bench simulated can be run dry"};
-  }
   if (Status s = check_devices(scenario.faults, config); !s) return s.error();
   Result<std::unique_ptr<Plant>> made = Plant::create(config, scenario, seed, clock);
   if (!made) return made.error();
@@ -139,13 +132,13 @@ Result<FarEnds> make_far_ends(const config::BenchConfig& config,
   auto vertical = supply("coil_vertical", config.coil_vertical, MagneticPhysics::kVertical);
   if (!vertical) return vertical.error();
   ends.coil_vertical = *std::move(vertical);
-  {
+  if (config.turntable.motorised) {
     Result<InstrumentLine> line = lines.to("turntable", ScpiFarEnd::kFaults);
     if (!line) return line.error();
     ends.turntable = std::make_unique<ScpiFarEnd>(*config.turntable.device, make_turntable_output(),
                                                   *std::move(line));
   }
-  {
+  if (config.magnetometer.fitted) {
     Result<InstrumentLine> line = lines.to("magnetometer", HidFarEnd::kFaults);
     if (!line) return line.error();
     ends.magnetometer =

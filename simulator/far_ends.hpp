@@ -30,8 +30,8 @@ struct FarEnds {
   std::unique_ptr<ModbusFarEnd> thermostat;
   std::unique_ptr<ScpiFarEnd> coil_horizontal;
   std::unique_ptr<ScpiFarEnd> coil_vertical;
-  std::unique_ptr<HidFarEnd> magnetometer;
-  std::unique_ptr<ScpiFarEnd> turntable;
+  std::unique_ptr<HidFarEnd> magnetometer;  ///< null where the bench has none
+  std::unique_ptr<ScpiFarEnd> turntable;    ///< null where a hand turns the gyro
   std::unique_ptr<GyroFarEnd> gyro;
   std::vector<AuxiliaryEnd> auxiliary;  ///< in the order of the bench
   std::shared_ptr<Plant> plant;         ///< what is true, whatever they say

@@ -15,6 +15,9 @@ namespace {
 /// Just under the second of silence after which a stream counts as dead.
 constexpr double kSlowAnswerS = 0.9;
 
+/// A quiet one, in the bits of a float.
+constexpr std::uint32_t kNotANumber = 0x7FC00000U;
+
 /// The gyro stands on a table with X up: it weighs 1 g along it. Everything else reads 0.
 double resting_value(const std::string& name) {
   return name == "acceleration_x" ? 1.0 : 0.0;
@@ -34,9 +37,12 @@ GyroFarEnd::GyroFarEnd(const config::FrameDevice& device, const config::NoiseCoe
       crc_(device.crc),
       garbage_(derive_seed(seed, "gyro garbage")),
       template_(frame_bytes_),
-      last_rate_(drivers::byte_count(device.rate.type)) {
+      last_rate_(drivers::byte_count(device.rate.type)),
+      last_sequence_(drivers::byte_count(device.sequence_type)) {
   std::copy(device_.header.begin(), device_.header.end(), template_.begin());
-  template_[device_.status_offset_bytes] = device_.status_valid_mask;
+  if (device_.status_offset_bytes) {
+    template_[*device_.status_offset_bytes] = device_.status_valid_mask;
+  }
   for (const config::FieldSpec& field : device_.others) {
     // A field that cannot hold its resting value stays 0.
     (void)drivers::write_field(field, device_.byte_order, resting_value(field.name), template_);
@@ -104,6 +110,16 @@ void GyroFarEnd::make_with_faults(std::int64_t complete) {
   }
 }
 
+void GyroFarEnd::exchange() {
+  plant_->exchange_gyro();
+  for (const std::int64_t complete = complete_frames(); next_ < complete; ++next_) noise_.next();
+  step_end_ = 0;
+  sequence_ = 0;
+  pending_.clear();
+  pending_sent_ = pending_arrived_ = 0;
+  held_back_since_s_.reset();
+}
+
 Status GyroFarEnd::write(std::span<const std::byte>) {
   return {};
 }
@@ -117,7 +133,7 @@ void GyroFarEnd::skip_lost() {
   const auto first_kept = static_cast<std::int64_t>(std::ceil(kept_s / frame_s_));
   for (; next_ < first_kept; ++next_) {
     noise_.next();
-    sequence_ = (sequence_ + 1) % device_.sequence_modulus;
+    sequence_ = next_sequence();
   }
 }
 
@@ -142,14 +158,28 @@ void GyroFarEnd::make_frame(std::uint8_t* out) {
   }
   const double rate = quantiser_.quantise(step_rate_deg_per_h_ + noise_.next());
   std::memcpy(out, template_.data(), frame_bytes_);
-  out[device_.sequence_offset_bytes] = static_cast<std::uint8_t>(sequence_);
+  drivers::store_bytes(out + device_.sequence_offset_bytes,
+                       drivers::byte_count(device_.sequence_type), device_.byte_order, sequence_);
   const std::span<std::uint8_t> frame(out, frame_bytes_);
   if (!drivers::write_field(device_.rate, device_.byte_order, rate, frame)) {
-    out[device_.status_offset_bytes] = 0;  // Over range: the gyro says that it is not valid.
+    say_invalid(out);  // over range
   }
   ++next_;
-  sequence_ = sequence_ + 1 == device_.sequence_modulus ? 0 : sequence_ + 1;
+  sequence_ = next_sequence();
   crc_.store(out);
+}
+
+std::uint32_t GyroFarEnd::next_sequence() const {
+  return static_cast<std::uint32_t>((std::uint64_t{sequence_} + 1) % device_.sequence_modulus);
+}
+
+void GyroFarEnd::say_invalid(std::uint8_t* frame) const {
+  if (device_.status_offset_bytes) {
+    frame[*device_.status_offset_bytes] = 0;
+  } else if (device_.rate.type == NumberType::kFloat32) {
+    drivers::store_bytes(frame + device_.rate.offset_bytes, sizeof(float), device_.byte_order,
+                         kNotANumber);
+  }  // else it cannot say so
 }
 
 bool GyroFarEnd::spoil(std::uint8_t* frame, double time_s) {
@@ -161,18 +191,19 @@ bool GyroFarEnd::spoil(std::uint8_t* frame, double time_s) {
   } else {
     std::memcpy(last_rate_.data(), rate, last_rate_.size());
   }
-  if (active(FaultKind::kException)) frame[device_.status_offset_bytes] = 0;
+  if (active(FaultKind::kException)) say_invalid(frame);
   if (active(FaultKind::kNan)) {
     if (device_.rate.type == NumberType::kFloat32) {
-      drivers::store_bytes(rate, sizeof(float), device_.byte_order, 0x7FC00000U);
+      drivers::store_bytes(rate, sizeof(float), device_.byte_order, kNotANumber);
     } else {
-      frame[device_.status_offset_bytes] = 0;
+      say_invalid(frame);
     }
   }
+  std::uint8_t* const sequence = frame + device_.sequence_offset_bytes;
   if (active(FaultKind::kBadSequence)) {
-    frame[device_.sequence_offset_bytes] = last_sequence_;
+    std::memcpy(sequence, last_sequence_.data(), last_sequence_.size());
   } else {
-    last_sequence_ = frame[device_.sequence_offset_bytes];
+    std::memcpy(last_sequence_.data(), sequence, last_sequence_.size());
   }
   crc_.store(frame);
   if (active(FaultKind::kBadChecksum)) frame[device_.crc.offset_bytes] ^= 0x01U;

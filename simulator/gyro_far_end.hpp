@@ -37,6 +37,9 @@ class GyroFarEnd final : public drivers::SerialTransport {
              std::shared_ptr<Plant> plant, FaultSchedule faults, std::uint64_t seed);
 
   Result<std::size_t> read_some(std::span<std::byte> out) override;
+  /// Another gyro of the same kind, switched on now: what the one before went through is not its
+  /// past, and its counter begins anew.
+  void exchange();
   /// Takes every command and does nothing.
   Status write(std::span<const std::byte> bytes) override;
   bool plugged() const { return !faults_.unplugged(plant_->now_s()); }
@@ -47,6 +50,9 @@ class GyroFarEnd final : public drivers::SerialTransport {
   std::int64_t complete_frames() const;
   /// Draws frame next_ and writes it to `out`.
   void make_frame(std::uint8_t* out);
+  std::uint32_t next_sequence() const;
+  /// In the status, or where there is none by a rate that is no number.
+  void say_invalid(std::uint8_t* frame) const;
   /// False when a fault keeps the frame off the line.
   bool spoil(std::uint8_t* frame, double time_s);
   /// Puts every frame up to `complete` into pending_, faults and all.
@@ -73,8 +79,8 @@ class GyroFarEnd final : public drivers::SerialTransport {
   std::size_t pending_sent_ = 0;
   std::size_t pending_arrived_ = 0;  ///< the rest is held back
   std::optional<double> held_back_since_s_;
-  std::vector<std::uint8_t> last_rate_;  ///< as it last went out, for a stuck gyro
-  std::uint8_t last_sequence_ = 0;       ///< likewise, for one that repeats
+  std::vector<std::uint8_t> last_rate_;      ///< as it last went out, for a stuck gyro
+  std::vector<std::uint8_t> last_sequence_;  ///< likewise, for one that repeats
 };
 
 }  // namespace fogbench::simulator

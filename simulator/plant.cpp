@@ -49,7 +49,8 @@ Plant::Plant(const config::BenchConfig& bench, HiddenEffects effects,
       thermal_(bench.simulation.thermal, step_s_),
       thermostat_(bench.simulation.thermal, step_s_, derive_seed(seed, "thermostat sensors")),
       magnetic_(bench.simulation.magnetic, step_s_, derive_seed(seed, "ambient field steps")),
-      effects_(std::move(effects)),
+      effects_(effects),
+      fresh_effects_(std::move(effects)),
       turntable_noise_(derive_seed(seed, "turntable")) {
   state_.step_s = step_s_;
   state_.reference_temperature_c = reference_temperature_c;
@@ -85,6 +86,17 @@ void Plant::rotate_to(double azimuth_deg) {
   azimuth_error_deg_ = config_.turntable_repeatability.value * turntable_noise_();
 }
 
+void Plant::exchange_gyro() {
+  advance();
+  effects_ = fresh_effects_;
+  gyro_since_ = steps_;
+}
+
+void Plant::turned_to(double azimuth_deg) {
+  rotate_to(azimuth_deg);
+  encoder_deg_ = azimuth_deg;
+}
+
 void Plant::step() {
   ++steps_;
   const HeaterPower power = heaters_open_ ? HeaterPower{} : thermostat_.power();
@@ -102,7 +114,7 @@ void Plant::step() {
 }
 
 void Plant::observe() {
-  state_.time_s = static_cast<double>(steps_) * step_s_;
+  state_.time_s = static_cast<double>(steps_ - gyro_since_) * step_s_;
   state_.temperature_c = thermal_.carrier_c();
   state_.temperature_rate_c_per_h = thermal_.carrier_rate_c_per_h();
   state_.temperature_acceleration_c_per_h2 = thermal_.carrier_acceleration_c_per_h2();
@@ -112,7 +124,7 @@ void Plant::observe() {
   state_.field_100ut = field_ut();
   for (double& h : state_.field_100ut) h /= 100.0;
   for (const auto& [name, its] : auxiliary_) {
-    const double turns = state_.time_s / its.goes.period.count();
+    const double turns = static_cast<double>(steps_) * step_s_ / its.goes.period.count();
     state_.auxiliary[name] = its.goes.swing * std::sin(2.0 * std::numbers::pi * turns);
   }
   state_.sum_squared_current_a2 = magnetic_.sum_squared_current_a2();

@@ -63,6 +63,10 @@ class Plant {
 
   /// The turntable starts to move, a quarter turn in `move_time` of the bench's configuration.
   void rotate_to(double azimuth_deg);
+  /// Another gyro of the same kind, switched on now: its effects have no past.
+  void exchange_gyro();
+  /// A hand has turned the gyro: it stands there now.
+  void turned_to(double azimuth_deg);
   /// As its encoder says; the true azimuth differs by the repeatability.
   double encoder_deg() const { return encoder_deg_; }
 
@@ -91,6 +95,8 @@ class Plant {
   ThermostatController thermostat_;
   MagneticPhysics magnetic_;
   HiddenEffects effects_;
+  const HiddenEffects fresh_effects_;  ///< as a gyro comes
+  std::int64_t gyro_since_ = 0;        ///< the step in which the present one was switched on
   NormalSource turntable_noise_;
   bool heaters_open_ = false;
   struct Auxiliary {

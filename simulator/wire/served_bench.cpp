@@ -87,6 +87,11 @@ Result<std::unique_ptr<ServedBench>> ServedBench::open(const config::BenchConfig
 }
 
 Status ServedBench::serve(const config::BenchConfig& config) {
+  if (!config.turntable.motorised) {
+    return Error{ErrorCode::kBadInput,
+                 "bench: /turntable/motorised is false, expected true: nobody turns the gyro of a "
+                 "served bench by hand; fogbench dry-run and fogbenchd run a procedure on it"};
+  }
   Status served = serve_registers("thermostat", config.thermostat, config.thermostat.device.unit_id,
                                   *ends_.thermostat, options_.modbus_port);
   if (served) {
@@ -97,7 +102,7 @@ Status ServedBench::serve(const config::BenchConfig& config) {
     served = serve_messages("coil_vertical", config.coil_vertical, config.coil_vertical.device.name,
                             "usb", *ends_.coil_vertical);
   }
-  if (served) {
+  if (served && config.magnetometer.fitted) {
     served = serve_reports("magnetometer", config.magnetometer, config.magnetometer.device,
                            *ends_.magnetometer);
   }

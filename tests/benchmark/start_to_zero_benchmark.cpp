@@ -11,6 +11,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "config/bench.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/pty.hpp"
 #include "tests/support/source_tree.hpp"
@@ -30,7 +31,7 @@ std::string lonely_bench(const support::TemporaryFolder& folder, const std::stri
     if (!instrument.is_object() || !instrument.contains("connection")) continue;
     instrument["connection"] = "tty:" + (folder / name).string();
     const std::string device = instrument["device"];
-    instrument["device"] = fs::canonical(ready.parent_path() / device).string();
+    instrument["device"] = config::device_file(ready, device)->string();
   }
   bench["coil_horizontal"]["connection"] = "tty:" + tty;
   bench["thermostat"]["connection"] = "tcp:127.0.0.1:1";

@@ -30,7 +30,18 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BenchMistake{
             R"([{"op": "replace", "path": "/gyro/device", "value": "../devices/none.json"}])",
-            "changed.json: /gyro/device: "},
+            "changed.json: /gyro/device: \"../devices/none.json\", seen from this file, is "},
+        BenchMistake{R"([{"op": "replace", "path": "/gyro/device", "value": "gyro-kwh"}])",
+                     "expected a path from there, or a ready device (barometer-modbus, "},
+        BenchMistake{R"([{"op": "replace", "path": "/gyro/device", "value": "../gyro-kvh.json"}])",
+                     ": no such file; expected a path from there, or the ready device's name, "
+                     "\"gyro-kvh\""},
+        BenchMistake{R"([{"op": "add", "path": "/magnetometer/fitted", "value": false}])",
+                     "/magnetometer/device: found \"magnetometer-hid\", expected none"},
+        BenchMistake{R"([{"op": "remove", "path": "/magnetometer/device"}])",
+                     "/magnetometer/device: found nothing, expected a device file"},
+        BenchMistake{R"([{"op": "add", "path": "/magnetometer/ambient_ut", "value": [0, 0, 0]}])",
+                     "/magnetometer/ambient_ut: found a list of 3, expected none"},
         BenchMistake{
             R"([{"op": "replace", "path": "/gyro/device", "value": "../devices/coil-kepco.json"}])",
             "/gyro/device: names a device of the wrong kind for this instrument"},
@@ -70,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "value": "../devices/coil-kepco.json"}])",
                      "/turntable/device: sets A; expected a turntable that sets deg"},
         BenchMistake{R"([{"op": "replace", "path": "/turntable/motorised", "value": false}])",
-                     "/turntable/device: found \"../devices/turntable-scpi.json\", expected none"},
+                     "/turntable/device: found \"turntable-scpi\", expected none"},
         BenchMistake{R"([{"op": "remove", "path": "/turntable/device"}])",
                      "/turntable/device: found nothing, expected a device file"},
         BenchMistake{R"([{"op": "replace", "path": "/gyro/frame_rate_hz", "value": 2600}])",
@@ -126,6 +137,19 @@ INSTANTIATE_TEST_SUITE_P(
         BenchMistake{R"([{"op": "replace", "path": "/simulation/magnetic/sensor_matrix",
                      "value": [[1, 0, 0], [1, 0, 0], [0, 0, 1]]}])",
                      "/simulation/magnetic/sensor_matrix: cannot be inverted"}));
+
+TEST(LoadBench, ACopyAnywhereNamesReadyDevices) {
+  const support::TemporaryFolder folder;
+  const auto copy = folder.path() / "mine.json";
+  std::filesystem::copy_file(kReady / "benches/simulated-auxiliary.json", copy);
+  const auto bench = load_bench(copy);
+  ASSERT_TRUE(bench) << bench.error().message;
+  EXPECT_EQ(bench->gyro.device.frame_bytes, 36);
+  // A file of its own beside it is taken by its path, however its name looks.
+  std::filesystem::copy_file(kReady / "devices/gyro-crc8.json", folder.path() / "gyro-kvh");
+  EXPECT_EQ(*device_file(copy, "gyro-kvh"), folder.path() / "gyro-kvh");
+  EXPECT_EQ(device_file(copy, "coil-kepco")->filename(), "coil-kepco.json");
+}
 
 TEST(LoadBench, AUnitThatNobodyHasOnASerialLineIsRefusedThereOnly) {
   support::TemporaryFolder folder;

@@ -46,8 +46,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{kEurotherm, R"([{"op": "remove", "path": "/registers/0"}])",
                 "/registers: has no \"temperature_working_1\""},
         Mistake{kEurotherm,
-                R"([{"op": "replace", "path": "/registers/1/name", "value": "target"}])",
-                "/registers/4/name: found \"target\", expected a name that does not stand twice"},
+                R"([{"op": "add", "path": "/registers/-", "value": {"name": "target",
+                     "address": 900}}])",
+                "/registers/10/name: found \"target\", expected a name that does not stand twice"},
         Mistake{kEurotherm,
                 R"([{"op": "replace", "path": "/registers/1/address", "value": 32769}])",
                 "/registers/1/address: found 32769, expected an address that "
@@ -151,7 +152,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "/frame_rate_hz: found 3000, expected at most 2560.0: 36 bytes a frame at 921600 "
                 "bits a second"},
         Mistake{kKvh, R"([{"op": "replace", "path": "/sequence_modulus", "value": 257}])",
-                "/sequence_modulus: found 257"}));
+                "/sequence_modulus: found 257, expected at most 256, or a wider sequence_type"},
+        Mistake{kKvh, R"([{"op": "add", "path": "/sequence_type", "value": "int16"}])",
+                "/sequence_type: found \"int16\", expected uint8, uint16 or uint32"},
+        Mistake{kKvh, R"([{"op": "add", "path": "/sequence_type", "value": "uint16"}])",
+                "/temperature/offset_bytes: temperature takes byte 30, which the sequence has"},
+        Mistake{kKvh, R"([{"op": "remove", "path": "/status_valid_mask"}])",
+                "/status_valid_mask: found nothing, expected status_offset_bytes and a"}));
 
 TEST(LoadDevice, KnowsHexadecimalAndDefaults) {
   const auto file = load_device(kReady / kEurotherm);
@@ -192,13 +199,67 @@ TEST(CheckDevice, NamesEveryProblemAtOnce) {
     EXPECT_EQ(problem.message.find('\n'), std::string::npos);
     all += problem.message + "\n";
   }
-  EXPECT_EQ(problems.size(), 6U) << all;
+  EXPECT_EQ(problems.size(), 7U) << all;
   for (const char* expected :
        {"/unit_id: found 300", "/registers/0/address: found -1", "/registers/1/type: found",
         "/registers/1: has no key \"address\"", "/max_age: unknown key; did you mean",
-        "has no key \"target_maximum_c\""}) {
+        "has no key \"target_maximum_c\"",
+        "/registers: has no \"temperature_working_1\", \"temperature_working_2\", "}) {
     EXPECT_NE(all.find(expected), std::string::npos) << expected << " in\n" << all;
   }
+}
+
+TEST(CheckDevice, NamesEveryDisagreementAtOnceAndUnknownRegisters) {
+  ChangedFile file;
+  DeviceFile device;
+  const auto problems = check_device(file.patch(kEurotherm, R"([
+        {"op": "replace", "path": "/registers/2/name", "value": "temprature_control"},
+        {"op": "replace", "path": "/registers/4/scale", "value": 0},
+        {"op": "add", "path": "/registers/7/unit", "value": "K"},
+        {"op": "replace", "path": "/modes/boost", "value": 2},
+        {"op": "replace", "path": "/target_minimum_c", "value": 70},
+        {"op": "add", "path": "/registers/-", "value": {"name": "door", "address": 900}}])"),
+                                     device);
+  std::string all;
+  for (const Error& problem : problems) all += problem.message + "\n";
+  for (const char* expected :
+       {"/registers/2/name: unknown register \"temprature_control\"; did you mean "
+        "\"temperature_control\"?",
+        "/registers: has no \"temperature_control\"", "/registers/4/scale: found 0",
+        "/registers/10/name: unknown register \"door\"; known: temperature_working_1",
+        "expected a number that differs from that of", "/target_minimum_c: found 70",
+        "/registers/7/unit: found \"K\", expected none"}) {
+    EXPECT_NE(all.find(expected), std::string::npos) << expected << " in\n" << all;
+  }
+  EXPECT_EQ(problems.size(), 7U) << all;
+}
+
+TEST(CheckDevice, ARegisterThatPeopleOnlyLookAtIsNoMistakeWhereNoneLacks) {
+  ChangedFile file;
+  DeviceFile device;
+  const auto problems =
+      check_device(file.patch(kEurotherm,
+                              R"([{"op": "add", "path": "/registers/-", "value": {"name": "door",
+                     "address": 900}}])"),
+                   device);
+  EXPECT_TRUE(problems.empty()) << problems.front().message;
+}
+
+TEST(CheckDevice, AFrameNeedsNoStatusAndMayCountInSixteenBits) {
+  ChangedFile file;
+  DeviceFile device;
+  const auto problems = check_device(file.write(R"({
+    "kind": "frame", "name": "x", "header": "AA 55", "frame_bytes": 12,
+    "rate": {"name": "rate", "offset_bytes": 4, "type": "int32", "scale": 1e-9, "unit": "rad/s"},
+    "sequence_offset_bytes": 2, "sequence_type": "uint16", "sequence_modulus": 65536,
+    "crc": {"width_bits": 32, "polynomial": 79764919, "count_bytes": 8, "offset_bytes": 8},
+    "frame_rate_hz": 100})"),
+                                     device);
+  EXPECT_TRUE(problems.empty()) << problems.front().message;
+  const auto& frame = std::get<FrameDevice>(device);
+  EXPECT_FALSE(frame.status_offset_bytes);
+  EXPECT_EQ(frame.sequence_modulus, 65536U);
+  EXPECT_NEAR(frame.rate.scale, 1e-9 * 180.0 / 3.141592653589793 * 3600.0, 1e-12);
 }
 
 TEST(CheckDevice, FindsNothingInAReadyOne) {

@@ -211,6 +211,30 @@ TEST(FrameParser, ReadsLittleEndianIntegersAndShortHeaders) {
   EXPECT_NEAR(stream.block.rate_deg_per_h[1], -7.25f, 1e-6f);
 }
 
+TEST(FrameParser, CountsInSixteenBitsAndDoesWithoutAStatus) {
+  config::FrameDevice device;
+  device.header = {0xaa, 0x55};
+  device.frame_bytes = 9;
+  device.rate = {.name = "rate", .offset_bytes = 4, .type = NumberType::kInt16};
+  device.sequence_offset_bytes = 2;
+  device.sequence_type = NumberType::kUint16;
+  device.sequence_modulus = 65536;
+  device.crc = {.width_bits = 16, .polynomial = 0x1021, .count_bytes = 7, .offset_bytes = 7};
+  ASSERT_TRUE(check_layout(device));
+  Bytes bytes;
+  for (const std::uint16_t count : {65534, 65535, 0, 300, 301}) {  // 1 ... 299 are lost
+    Bytes frame{0xaa, 0x55, 0, 0, 0, 0, 0, 0, 0};
+    store_bytes(frame.data() + 2, 2, device.byte_order, count);
+    ASSERT_TRUE(write_field(device.rate, device.byte_order, count % 100, frame));
+    Crc(device.crc).store(frame.data());
+    append(bytes, frame);
+  }
+  Stream stream(device);
+  stream.feed(bytes, 4);
+  EXPECT_EQ(stream.settle().block.index, (std::vector<std::int64_t>{0, 1, 2, 302, 303}));
+  EXPECT_EQ(stream.parser.statistics().frames_missing, 299U);
+}
+
 TEST(FrameParser, LayoutsThatCannotBeAreBadInput) {
   const auto refused = [](auto change) {
     config::FrameDevice device = kvh_device();

@@ -42,6 +42,34 @@ class SerialGyroTest : public testing::Test {
   Clock::Instant late_until_{};  ///< until then frames come 80 ms late
 };
 
+TEST_F(SerialGyroTest, AnotherGyroIsCountedFromItsOwnPowerOn) {
+  auto gyro = open();
+  ASSERT_TRUE(gyro) << gyro.error().message;
+  GyroBlock block;
+  clock_.sleep_for(10s);
+  ASSERT_TRUE((*gyro)->read(block));
+  mute_ = true;
+  clock_.sleep_for(20s);
+  (void)(*gyro)->read(block);
+  mute_ = false;
+  const Clock::Instant power_on = clock_.now();
+  clock_.sleep_for(20s);
+  const auto before = (*gyro)->statistics();
+  ASSERT_TRUE((*gyro)->begin_anew(power_on));
+  EXPECT_NEAR(to_seconds((*gyro)->time_of(0) - power_on), 0.0, 2e-3);
+  block.clear();
+  clock_.sleep_for(1s);
+  ASSERT_TRUE((*gyro)->read(block));
+  EXPECT_NEAR(static_cast<double>(block.index.front()), 20000.0, 3.0);
+  for (std::size_t i = 0; i < block.index.size(); ++i) {
+    const double middle_s = (static_cast<double>(block.rate_deg_per_h[i]) + 0.5) * 1e-3;
+    ASSERT_NEAR(to_seconds((*gyro)->time_of(block.index[i]).time_since_epoch()), middle_s, 0.5e-3);
+  }
+  const auto of_its_own = (*gyro)->statistics() - before;
+  EXPECT_EQ(of_its_own.frames_good, block.index.size() + 1) << "and the first, which ties it";
+  EXPECT_EQ(of_its_own.frames_missing, 0U);
+}
+
 TEST_F(SerialGyroTest, TiesIndexToTheClockAndKeepsItThere) {
   clock_.sleep_for(12345678us);  // frames of the past, thrown away
   auto gyro = open();

@@ -48,7 +48,7 @@ class Line {
   std::vector<std::uint8_t> frame(Input& input) const {
     std::vector<std::uint8_t> bytes(device_.frame_bytes);
     std::copy(device_.header.begin(), device_.header.end(), bytes.begin());
-    bytes[device_.status_offset_bytes] = device_.status_valid_mask;
+    bytes[*device_.status_offset_bytes] = device_.status_valid_mask;
     bytes[device_.sequence_offset_bytes] = input.byte();
     const auto rate = input.bytes(4);
     std::copy(rate.begin(), rate.end(), bytes.begin() + device_.rate.offset_bytes);

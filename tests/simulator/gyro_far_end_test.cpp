@@ -231,5 +231,20 @@ TEST(GyroFarEnd, SaysThatItIsUnpluggedWhileItIs) {
   EXPECT_EQ(read.error().code, ErrorCode::kUnplugged);
 }
 
+TEST(GyroFarEnd, AnotherGyroHasNoPast) {
+  config::ScenarioConfig scenario;
+  scenario.hidden = {{.effect = "drift_linear", .amplitude = 3600.0, .parameters = {}}};
+  TestFarEnds bench(test_bench(), scenario);
+  bench.run_for(100.005);
+  const double drifted = frames_of(read_all(bench)).back().rate_deg_per_h;
+  bench.ends.exchange_gyro();
+  bench.run_for(0.2);
+  const std::vector<Frame> fresh = frames_of(read_all(bench));
+  ASSERT_FALSE(fresh.empty());
+  EXPECT_EQ(fresh.front().sequence, 0);
+  EXPECT_NEAR(drifted, 12.433 + 100.0, 1.0);
+  EXPECT_NEAR(fresh.back().rate_deg_per_h, 12.433, 1.0);
+}
+
 }  // namespace
 }  // namespace fogbench::simulator

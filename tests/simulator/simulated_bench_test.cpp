@@ -27,7 +27,11 @@ void expect_refused(const config::BenchConfig& bench, const config::ScenarioConf
 TEST(SimulatedBench, RefusesWhatItCannotSimulate) {
   config::BenchConfig by_hand = test_bench();
   by_hand.turntable.motorised = false;
-  expect_refused(by_hand, {}, "/turntable/motorised");
+  by_hand.magnetometer.fitted = false;
+  for (const char* device : {"turntable", "magnetometer"}) {
+    expect_refused(by_hand, {.faults = {fault(device, FaultKind::kTimeout, 0, 1)}},
+                   std::string("no device \"") + device + "\"; the bench has thermostat");
+  }
   config::BenchConfig bad_step = test_bench();
   bad_step.simulation.step = config::Seconds{0.0};
   expect_refused(bad_step, {}, "simulation step");
@@ -53,7 +57,8 @@ std::string two_hours(std::uint64_t seed, const std::vector<config::FaultSpec>& 
   config::BenchConfig config = test_bench(10.0);
   config.simulation.magnetic.ambient_steps_per_h = 5.0;
   TestFarEnds bench(config, scenario, seed);
-  auto& [thermostat, horizontal, vertical, magnetometer, turntable, gyro, auxiliary] = bench.ends;
+  auto& [thermostat, horizontal, vertical, magnetometer, turntable, gyro, auxiliary, turned,
+         exchange] = bench.ends;
   EXPECT_TRUE(auxiliary.empty());
   std::string log;
   const std::uint16_t target[] = {350};

@@ -54,9 +54,9 @@ inline std::vector<std::uint8_t> kvh_frame(std::int64_t sequence, double rate_de
   const Status written =
       drivers::write_field(device.rate, device.byte_order, rate_deg_per_h, frame);
   if (!written) std::abort();
-  frame[device.status_offset_bytes] = status;
+  frame[*device.status_offset_bytes] = status;
   frame[device.sequence_offset_bytes] =
-      static_cast<std::uint8_t>(sequence % device.sequence_modulus);
+      static_cast<std::uint8_t>(sequence % static_cast<std::int64_t>(device.sequence_modulus));
   crc.store(frame.data());
   return frame;
 }

@@ -11,6 +11,7 @@
 #include <map>
 #include <sstream>
 
+#include "config/bench.hpp"
 #include "tests/system/far_bench/client.hpp"
 #include "tests/system/fogbench.hpp"
 
@@ -58,7 +59,7 @@ class ServedSensors : public FogbenchTest {
     const auto ready = tests::source_tree() / "config/benches/simulated-auxiliary.json";
     auto bench = nlohmann::json::parse(support::read_text(ready));
     const auto absolute = [&](nlohmann::json& its) {
-      its["device"] = (ready.parent_path() / its["device"].get<std::string>()).lexically_normal();
+      its["device"] = config::device_file(ready, its["device"].get<std::string>())->string();
     };
     for (auto& [name, its] : bench.items()) {
       if (its.is_object() && its.contains("device")) absolute(its);

@@ -37,7 +37,7 @@ Status write_bench_file(const fs::path& folder, const ServedBench& served) {
   for (const simulator::ServedInstrument& instrument : served.instruments()) {
     auto& its = bench[instrument.name];
     its["connection"] = instrument.connection;
-    its["device"] = fs::canonical(ready.parent_path() / its["device"].get<std::string>()).string();
+    its["device"] = config::device_file(ready, its["device"].get<std::string>())->string();
   }
   std::ofstream(folder / "bench.json") << bench.dump(2);
   return {};
