@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <system_error>
@@ -10,6 +11,7 @@
 #include "cli/control_client.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
+#include "drivers/clock.hpp"
 #include "record/store.hpp"
 
 namespace fogbench::cli {
@@ -137,6 +139,33 @@ Result<daemon::Parameters> parse_parameters(const std::vector<std::string>& set)
     }
   }
   return parameters;
+}
+
+CLI::Option* add_gyro_on_since_option(CLI::App& command, std::string& moment) {
+  return command.add_option(
+      "--gyro-on-since", moment,
+      "When the gyro was switched on: 2026-11-29T18:00:00Z, or so long ago, 40min (default: when "
+      "its stream was first heard)");
+}
+
+Result<double> parse_moment(const std::string& option, const std::string& text) {
+  const double day = drivers::seconds_of_utc(text + "T00:00:00Z");
+  const double instant = drivers::seconds_of_utc(text);
+  if (std::isfinite(day)) return day;
+  if (std::isfinite(instant)) return instant;
+  double count = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  const double unit_s = unit == "min" ? 60.0 : unit == "h" ? 3600.0 : unit == "d" ? 86400.0 : 0.0;
+  if (error != std::errc{} || unit_s == 0.0 || !(count >= 0.0)) {
+    return Error{ErrorCode::kUsage,
+                 fmt::format("{}: found \"{}\", expected a date (2026-11-29), a time "
+                             "(2026-11-29T18:00:00Z), or so long ago (40min, 12h, 7d)",
+                             option, text)};
+  }
+  const std::chrono::duration<double> now =
+      drivers::SteadyClock::system_calendar().time_since_epoch();
+  return now.count() - count * unit_s;
 }
 
 }  // namespace fogbench::cli

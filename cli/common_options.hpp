@@ -44,4 +44,11 @@ std::vector<std::string> arguments_with_lists(int argc, char** argv);
 /// "name=1.5" or "name=31,35,40", blanks around numbers allowed. kUsage for anything else.
 Result<daemon::Parameters> parse_parameters(const std::vector<std::string>& set);
 
+/// --gyro-on-since WHEN, for parse_moment.
+CLI::Option* add_gyro_on_since_option(CLI::App& command, std::string& moment);
+
+/// A moment, Unix time in s: "2026-11-29" (its midnight, UTC), "2026-11-29T18:00:00Z", or so long
+/// before now: "40min", "12h", "7d". kUsage, which names `option`, for anything else.
+Result<double> parse_moment(const std::string& option, const std::string& text);
+
 }  // namespace fogbench::cli

@@ -10,6 +10,7 @@
 #include "cli/common_options.hpp"
 #include "cli/control_client.hpp"
 #include "cli/status_text.hpp"
+#include "drivers/clock.hpp"
 #include "procedures/sentence.hpp"
 
 namespace fogbench::cli {
@@ -37,7 +38,7 @@ Result<ExitStatus> run_pause(const PauseOptions& options) {
 }
 
 struct ResumeOptions {
-  std::string socket;
+  std::string socket, gyro_on_since;
   std::optional<std::uint64_t> run;
   bool discard = false;
 };
@@ -45,14 +46,20 @@ struct ResumeOptions {
 Result<ExitStatus> run_resume(const ResumeOptions& options) {
   auto client = ControlClient::connect(options.socket);
   if (!client) return client.error();
+  nlohmann::ordered_json params = nlohmann::ordered_json::object();
+  if (!options.gyro_on_since.empty()) {
+    const auto since = parse_moment("--gyro-on-since", options.gyro_on_since);
+    if (!since) return since.error();
+    params["gyro_on_since"] = drivers::utc_text(*since);
+  }
   if (!options.run) {
-    const auto resumed = (*client)->call("resume");
+    const auto resumed = (*client)->call("resume", params);
     if (!resumed) return resumed.error();
     fmt::print("Resumed.\n");
     return ExitStatus::kDone;
   }
-  const auto done =
-      (*client)->call(options.discard ? "discard" : "resume", {{"run", *options.run}});
+  params["run"] = *options.run;
+  const auto done = (*client)->call(options.discard ? "discard" : "resume", params);
   if (!done) return done.error();
   if (options.discard) {
     fmt::print("Run {} is given up; what it measured stays in the run log.\n", *options.run);
@@ -86,6 +93,7 @@ void add_resume(CLI::App& app, Action& action) {
   add_command<ResumeOptions>(
       app, action, "resume", "Go on with a paused run, a held queue, or a run that was interrupted",
       "  fogbench resume\n"
+      "  fogbench resume --gyro-on-since 20min    the gyro that was put on for the next job\n"
       "  fogbench resume 7\n"
       "  fogbench resume 7 --discard\n"
       "With a number: after a crash, a power cut, a fault or an abort. Gyro and bench are brought "
@@ -97,8 +105,10 @@ void add_resume(CLI::App& app, Action& action) {
         CLI::Option* run =
             command.add_option("RUN", options.run, "The number of a run that was not completed")
                 ->check(wrong_run_number);
+        CLI::Option* since = add_gyro_on_since_option(command, options.gyro_on_since);
         command.add_flag("--discard", options.discard, "Give the interrupted run up instead")
-            ->needs(run);
+            ->needs(run)
+            ->excludes(since);
         add_socket_option(command, options.socket);
       },
       run_resume);

@@ -11,13 +11,14 @@
 #include "cli/output.hpp"
 #include "cli/status_text.hpp"
 #include "daemon/run_options.hpp"
+#include "drivers/clock.hpp"
 #include "procedures/sentence.hpp"
 
 namespace fogbench::cli {
 namespace {
 
 struct RunOptions {
-  std::string procedure, gyro, socket;
+  std::string procedure, gyro, gyro_on_since, socket;
   std::vector<std::string> set;
   bool keep_going = false, json = false;
 };
@@ -40,6 +41,11 @@ Result<ExitStatus> run_run(const RunOptions& options) {
   nlohmann::ordered_json params{{"procedure", procedure}, {"set", set}};
   if (!options.gyro.empty()) params["gyro"] = options.gyro;
   if (options.keep_going) params["keep_going"] = true;
+  if (!options.gyro_on_since.empty()) {
+    const auto since = parse_moment("--gyro-on-since", options.gyro_on_since);
+    if (!since) return since.error();
+    params["gyro_on_since"] = drivers::utc_text(*since);
+  }
   const auto queued = (*client)->call("run", params);
   if (!queued) return queued.error();
   if (options.json) {
@@ -73,6 +79,7 @@ void add_run(CLI::App& app, Action& action) {
                         "name=value or name=value,value...: a parameter of the procedure")
             ->allow_extra_args(false);
         daemon::add_gyro_option(command, options.gyro, "the daemon's, else the bench file's");
+        add_gyro_on_since_option(command, options.gyro_on_since);
         command.add_flag("--keep-going", options.keep_going,
                          "Run it also when the run before it has failed, the bench being safe");
         add_socket_option(command, options.socket);

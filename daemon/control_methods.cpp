@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <functional>
 #include <limits>
@@ -128,8 +129,21 @@ std::optional<bool> flag_of(const json& params, const char* name) {
   return value->is_boolean() ? std::optional(value->get<bool>()) : std::nullopt;
 }
 
+/// Since when a person says that the gyro is on; nothing where he does not.
+std::variant<std::optional<SwitchedOn>, RpcError> switched_on_of(const json& params,
+                                                                 const Caller& caller) {
+  const auto since = params.find("gyro_on_since");
+  if (since == params.end()) return std::optional<SwitchedOn>();
+  const double unix_s =
+      since->is_string() ? drivers::seconds_of_utc(since->get<std::string>()) : std::nan("");
+  if (!std::isfinite(unix_s)) {
+    return invalid("/params/gyro_on_since: expected a time such as 2026-11-29T18:00:00Z");
+  }
+  return std::optional<SwitchedOn>({unix_s, user_name(caller.uid)});
+}
+
 /// What the parameters of `run` ask for.
-std::variant<Order, RpcError> order_of(const json& params) {
+std::variant<Order, RpcError> order_of(const json& params, const Caller& caller) {
   const auto name = params.find("procedure");
   if (name == params.end() || !name->is_string()) {
     return invalid("/params/procedure: expected a procedure's name, or its file's full path");
@@ -149,6 +163,9 @@ std::variant<Order, RpcError> order_of(const json& params) {
   const auto keep_going = flag_of(params, "keep_going");
   if (!keep_going) return invalid("/params/keep_going: expected true or false");
   order.keep_going = *keep_going;
+  const auto since = switched_on_of(params, caller);
+  if (const auto* refused = std::get_if<RpcError>(&since)) return *refused;
+  order.switched_on = std::get<std::optional<SwitchedOn>>(since);
   return order;
 }
 
@@ -162,6 +179,7 @@ Outcome discard_run(RunDesk& desk, const std::filesystem::path& store, std::int6
   const Status given_up = (*log)->give_up(run, "given up by " + by.name);
   if (!given_up) return refusal(given_up.error());
   desk.withdraw_offer(run);
+  desk.happened("info", fmt::format("run {} given up, by {}", run, by.name));
   return ordered_json::object();
 }
 
@@ -221,9 +239,9 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
        }},
       {"run",
        Role::kOperator,
-       {"procedure", "set", "gyro", "keep_going"},
+       {"procedure", "set", "gyro", "keep_going", "gyro_on_since"},
        [](Self& self, const json& params, Caller& caller) -> Outcome {
-         auto order = order_of(params);
+         auto order = order_of(params, caller);
          if (const auto* refused = std::get_if<RpcError>(&order)) return *refused;
          return enqueue(self.desk_, self.setup_, self.store_, std::get<Order>(std::move(order)),
                         caller);
@@ -244,8 +262,8 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
          const auto job = number_of(params, "job"), to = number_of(params, "to");
          if (!job) return invalid("/params/job: expected a job's number");
          if (!to) return invalid("/params/to: expected a place in the queue, from 1 on");
-         person_of(caller, fmt::format("move job {} to place {}", *job, *to));
-         return done(self.desk_.move(*job, *to));
+         const Person by = person_of(caller, fmt::format("move job {} to place {}", *job, *to));
+         return done(self.desk_.move(*job, *to, by));
        }},
       {"pause",
        Role::kOperator,
@@ -263,12 +281,19 @@ const ControlMethods::Method* ControlMethods::find(const std::string& name) {
        }},
       {"resume",
        Role::kOperator,
-       {"run"},
+       {"run", "gyro_on_since"},
        [](Self& self, const json& params, Caller& caller) -> Outcome {
-         if (!params.contains("run")) return done(self.desk_.resume(person_of(caller, "resume")));
+         const auto since = switched_on_of(params, caller);
+         if (const auto* refused = std::get_if<RpcError>(&since)) return *refused;
+         const auto& switched_on = std::get<std::optional<SwitchedOn>>(since);
+         if (!params.contains("run")) {
+           return done(self.desk_.resume(person_of(caller, "resume"), switched_on));
+         }
          const auto run = run_of(params);
          if (!run) return invalid(kRunExpected);
-         return enqueue(self.desk_, self.setup_, self.store_, Order{{}, {}, *run}, caller);
+         Order order{{}, {}, *run};
+         order.switched_on = switched_on;
+         return enqueue(self.desk_, self.setup_, self.store_, std::move(order), caller);
        }},
       {"discard",
        Role::kOperator,
@@ -326,6 +351,7 @@ std::string ControlMethods::answer(std::string_view line, Caller& caller) {
       return RpcError{RpcCode::kMethodNotFound, "there is no method of that name"};
     }
     if (caller.role < method->role) {
+      tell_refused(user_name(caller.uid), std::string(method->name));
       return RpcError{RpcCode::kPermission,
                       fmt::format("permission denied: {} may not {}: {}'s role is {}, {} is "
                                   "expected",
@@ -349,6 +375,23 @@ std::string ControlMethods::answer(std::string_view line, Caller& caller) {
   if (request.id.empty()) return {};
   if (error != nullptr) return format_error(request.id, *error);
   return format_result(request.id, std::get<ordered_json>(outcome));
+}
+
+void ControlMethods::tell_refused(const std::string& user, const std::string& method) {
+  Refusals& refusals = refused_[{user, method}];
+  const auto now = clock_.now();
+  if (refusals.told && now - *refusals.told < kRefusalsTogether) {
+    ++refusals.untold;
+    return;
+  }
+  desk_.happened("warning",
+                 fmt::format("refused: {} may not {}{}", user, method,
+                             refusals.untold == 0
+                                 ? ""
+                                 : fmt::format(", and was refused {} times more since it was said "
+                                               "last",
+                                               refusals.untold)));
+  refusals = {now, 0};
 }
 
 std::string ControlMethods::metrics() const {

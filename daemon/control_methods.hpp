@@ -2,9 +2,13 @@
 // The methods of protocol.md: who may call each, what its parameters must be, what it does at the
 // desk. On the control socket's thread.
 
+#include <chrono>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "daemon/control_server.hpp"
 #include "daemon/json_rpc.hpp"
@@ -32,6 +36,10 @@ class ControlMethods final : public ControlService {
   std::string metrics() const;
 
  private:
+  /// On the bench's record, but not for every one of a client that insists.
+  void tell_refused(const std::string& user, const std::string& method);
+  static constexpr std::chrono::minutes kRefusalsTogether{1};
+
   struct Method;
   static const Method* find(const std::string& name);
 
@@ -39,6 +47,12 @@ class ControlMethods final : public ControlService {
   Setup setup_;
   std::filesystem::path store_;
   bool forced_ = false;
+  drivers::SteadyClock clock_;
+  struct Refusals {
+    std::optional<drivers::Clock::Instant> told;
+    std::uint64_t untold = 0;
+  };
+  std::map<std::pair<std::string, std::string>, Refusals> refused_;  ///< by user and method
   ControlTotals totals_;
 };
 

@@ -49,6 +49,7 @@ Status DeskRecorder::monitor(const procedures::MonitorRow& row) {
   time_s_ = row.time_s;
   if (const Status recorded = record_.monitor(row); !recorded) return recorded;
   desk_.saw(row);
+  record_bench_events();
   return record_notes();
 }
 
@@ -60,7 +61,19 @@ Status DeskRecorder::end_run(const procedures::RunEnd& end) {
   desk_.run_ending(end);
   const Status noted = record_notes();
   const Status ended = record_.end_run(end);
+  record_bench_events();
   return noted ? ended : noted;
+}
+
+void DeskRecorder::record_bench_events() {
+  for (record::BenchEvent& event : desk_.take_bench_events()) {
+    if (bench_events_.size() == kMostKept) bench_events_.pop_front();
+    bench_events_.push_back(std::move(event));
+  }
+  while (!bench_events_.empty()) {
+    if (write_bench_event_ && !write_bench_event_(bench_events_.front())) return;
+    bench_events_.pop_front();
+  }
 }
 
 Status DeskRecorder::record_notes() {

@@ -4,6 +4,8 @@
 // of the run, with who did it, at the next reading of the instruments or before the run's end.
 // On the bench's thread.
 
+#include <deque>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,8 +16,15 @@ namespace fogbench::daemon {
 
 class DeskRecorder final : public procedures::Recorder {
  public:
-  /// Both must outlive it.
-  DeskRecorder(procedures::Recorder& record, RunDesk& desk) : record_(record), desk_(desk) {}
+  using WriteBenchEvent = std::function<Status(const record::BenchEvent&)>;
+  /// All must outlive it. What happens outside of runs goes to `write`, if any.
+  DeskRecorder(procedures::Recorder& record, RunDesk& desk, WriteBenchEvent write = {})
+      : record_(record), desk_(desk), write_bench_event_(std::move(write)) {}
+
+  /// Within a run it is done by itself. What cannot be written is kept for the next time, up to
+  /// kMostKept of it.
+  void record_bench_events();
+  static constexpr std::size_t kMostKept = 1000;
 
   Result<std::int64_t> begin_run(
       const procedures::RunHeader& header,
@@ -35,8 +44,10 @@ class DeskRecorder final : public procedures::Recorder {
 
   procedures::Recorder& record_;
   RunDesk& desk_;
-  std::vector<Note> notes_;  ///< not on record yet
-  double time_s_ = 0.0;      ///< of the run's last record
+  WriteBenchEvent write_bench_event_;
+  std::vector<Note> notes_;                      ///< not on record yet
+  std::deque<record::BenchEvent> bench_events_;  ///< likewise
+  double time_s_ = 0.0;                          ///< of the run's last record
 };
 
 }  // namespace fogbench::daemon

@@ -54,6 +54,18 @@ std::deque<Job>::iterator JobQueue::find(std::uint64_t job) {
   return std::find_if(jobs_.begin(), jobs_.end(), [job](const Job& j) { return j.job == job; });
 }
 
+const Job* JobQueue::job(std::uint64_t job) const {
+  const auto found =
+      std::find_if(jobs_.begin(), jobs_.end(), [job](const Job& j) { return j.job == job; });
+  return found == jobs_.end() ? nullptr : &*found;
+}
+
+void JobQueue::switched_on(const SwitchedOn& since) {
+  jobs_.front().order.switched_on = since;
+  jobs_.front().procedure.switched_on = since;
+  ++changes_;
+}
+
 JobQueue::Refused JobQueue::remove(std::uint64_t job) {
   const auto found = find(job);
   if (found == jobs_.end()) return not_queued(job);
@@ -143,7 +155,7 @@ void JobQueue::ended(RunOutcome outcome, bool safe_state_reached) {
 }
 
 JobQueue::Waiting JobQueue::waiting() const {
-  Waiting waiting{changes_, asked_, {}};
+  Waiting waiting{changes_, jobs_ever_, asked_, {}};
   if (starting_) waiting.orders.push_back(*starting_);
   for (const Job& job : jobs_) {
     waiting.orders.emplace_back(job.order, job.by);

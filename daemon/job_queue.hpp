@@ -6,6 +6,7 @@
 // whether the daemon was started anew, how the last run ended, which gyro is on the bench, and the
 // job that would begin now. A job that is removed or moved takes its reason with it.
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -44,10 +45,14 @@ class JobQueue {
                                             const Person& by);
   /// One that an earlier daemon had: to the end, and nothing begins until somebody goes on.
   void restore(Order order, PlannedProcedure procedure, const Person& by);
+  /// How many jobs an earlier daemon has had: no number is given twice.
+  void restore_count(std::uint64_t jobs_ever) { jobs_ever_ = std::max(jobs_ever_, jobs_ever); }
   Refused remove(std::uint64_t job);
   /// To that place; the next to begin has place 1.
   Refused move(std::uint64_t job, std::uint64_t place);
   const std::deque<Job>& jobs() const { return jobs_; }
+  /// Null when it is not in the queue.
+  const Job* job(std::uint64_t job) const;
   bool takes_up(std::int64_t run) const;
 
   /// No run begins any more, for that reason, until somebody goes on.
@@ -57,6 +62,8 @@ class JobQueue {
   /// Somebody goes on: all that holds is seen to, and the next job's gyro is on the bench. While a
   /// run is under way only what hold() asked for is undone.
   void go_on();
+  /// Of the next job's gyro. Precondition: there is one.
+  void switched_on(const SwitchedOn& since);
   /// Why nothing begins until somebody goes on; empty: nothing keeps it.
   std::string held_because() const;
 
@@ -70,6 +77,7 @@ class JobQueue {
   /// is not on record yet. `changes` rises with every change of it.
   struct Waiting {
     std::uint64_t changes = 0;
+    std::uint64_t jobs_ever = 0;
     std::string asked_hold;
     std::vector<std::pair<Order, Person>> orders;
   };

@@ -37,11 +37,14 @@ Result<PlannedProcedure> plan_order(const Order& order, const Setup& setup,
   if (order.takes_up == 0) {
     auto planned = plan_named(order, setup, reader);
     if (planned && !order.gyro.empty()) planned->gyro = order.gyro;
+    if (planned) planned->switched_on = order.switched_on;
     return planned;
   }
   const auto log = record::RunLogReader::open(store);
   if (!log) return log.error();
-  return plan_resumption(**log, order.takes_up, setup);
+  auto planned = plan_resumption(**log, order.takes_up, setup);
+  if (planned) planned->switched_on = order.switched_on;
+  return planned;
 }
 
 bool is_serial_number(std::string_view text) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,7 +20,8 @@ struct Order {
   std::int64_t takes_up = 0;  ///< a run that was interrupted, in place of the others; 0: none
   std::string gyro;         ///< serial number; empty: that of the daemon, else of the bench's file
   bool keep_going = false;  ///< also when the run before it has failed, the bench being safe
-  std::uint64_t job = 0;    ///< its number in the queue of the daemon before; 0: it has none yet
+  std::optional<SwitchedOn> switched_on;  ///< as somebody says of the gyro
+  std::uint64_t job = 0;  ///< its number in the queue of the daemon before; 0: it has none yet
 };
 
 /// `store` is the run log that holds what is taken up; `reader` is who may read the procedure's

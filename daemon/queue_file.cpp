@@ -33,6 +33,11 @@ std::optional<Kept> kept_from(const nlohmann::json& entry) {
     if (!job->is_number_unsigned()) return std::nullopt;
     kept.order.job = job->get<std::uint64_t>();
   }
+  if (const auto since = entry.find("gyro_on_since_unix_s"); since != entry.end()) {
+    const auto by = entry.find("gyro_on_since_by");
+    if (!since->is_number() || by == entry.end() || !by->is_string()) return std::nullopt;
+    kept.order.switched_on = SwitchedOn{since->get<double>(), by->get<std::string>()};
+  }
   if (const auto run = entry.find("takes_up"); run != entry.end()) {
     if (!run->is_number_unsigned()) return std::nullopt;
     kept.order.takes_up = run->get<std::int64_t>();
@@ -87,6 +92,13 @@ Status QueueFile::load(RunDesk& desk, const Setup& setup, const std::filesystem:
   if (!hold.is_null() && !hold.is_string()) {
     return config::bad_input(path_.string() + ": /hold: expected why the queue is held");
   }
+  if (document->is_object()) {
+    const nlohmann::json last = document->value("last_job", nlohmann::json(0U));
+    if (!last.is_number_unsigned()) {
+      return config::bad_input(path_.string() + ": /last_job: expected the number of a job");
+    }
+    desk.restore_count(last.get<std::uint64_t>());
+  }
   if (hold.is_string()) desk.restore_hold(hold.get<std::string>());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const auto kept = kept_from(jobs[i]);
@@ -121,7 +133,7 @@ void QueueFile::update(const RunDesk& desk) {
 
 Status QueueFile::write(const JobQueue::Waiting& waiting) const {
   std::error_code error;
-  if (waiting.orders.empty() && waiting.asked_hold.empty()) {
+  if (waiting.orders.empty() && waiting.asked_hold.empty() && waiting.jobs_ever == 0) {
     std::filesystem::remove(path_, error);
     if (!error) return {};
     return config::bad_input(fmt::format("{}: {}", path_.string(), error.message()));
@@ -138,11 +150,15 @@ Status QueueFile::write(const JobQueue::Waiting& waiting) const {
       if (!order.gyro.empty()) entry["gyro"] = order.gyro;
     }
     if (order.keep_going) entry["keep_going"] = true;
+    if (order.switched_on) {
+      entry["gyro_on_since_unix_s"] = order.switched_on->unix_s;
+      entry["gyro_on_since_by"] = order.switched_on->by;
+    }
     entry["by"] = by.name;
     entry["uid"] = by.uid;
     list.push_back(std::move(entry));
   }
-  ordered_json document{{"jobs", std::move(list)}};
+  ordered_json document{{"jobs", std::move(list)}, {"last_job", waiting.jobs_ever}};
   if (!waiting.asked_hold.empty()) document["hold"] = waiting.asked_hold;
   constexpr auto kReplace = ordered_json::error_handler_t::replace;
   return config::write_file(path_, document.dump(2, ' ', false, kReplace) + "\n");

@@ -24,7 +24,8 @@ class QueueFile {
   /// planned is left out, with its reason in the log. kBadInput when the file is none of ours.
   Status load(RunDesk& desk, const Setup& setup, const std::filesystem::path& store);
 
-  /// Writes when the queue has changed since the last time; no file is an empty queue. A failure is
+  /// Writes when the queue has changed since the last time; no file: there never was a job. A
+  /// failure is
   /// in the log once, and tried again.
   void update(const RunDesk& desk);
 

@@ -15,6 +15,17 @@ RpcError wrong_state(std::string says) {
   return {RpcCode::kWrongState, std::move(says)};
 }
 
+std::string data_text(const nlohmann::ordered_json& data) {
+  return data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+/// "coil-sweep, gyro FOG-42", or what it takes up.
+std::string title_of(const Job& job) {
+  std::string title = job.procedure.plan.procedure;
+  if (job.order.takes_up != 0) title += fmt::format(", taking up run {}", job.order.takes_up);
+  return job.procedure.gyro.empty() ? title : title + ", gyro " + job.procedure.gyro;
+}
+
 constexpr auto kNothingRuns = "nothing is running";
 constexpr auto kStopping = "the daemon is stopping";
 
@@ -25,12 +36,33 @@ std::optional<double> DeskView::now_s() const {
   return (run->progress.started + run->progress.elapsed).count();
 }
 
-void RunDesk::note(const std::string& action, const Person& by) {
+void RunDesk::note(const std::string& action, const Person& by, std::uint64_t job) {
   changed();
-  if (!view_.run) return;
-  const nlohmann::ordered_json data{{"action", action}, {"user", by.name}, {"uid", by.uid}};
-  notes_.push_back({fmt::format("{}, by {}", action, by.name),
-                    data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)});
+  if (!view_.run) return note_on_bench(action, by);
+  nlohmann::ordered_json data{{"action", action}, {"user", by.name}, {"uid", by.uid}};
+  if (job != 0) data["job"] = job;
+  notes_.push_back({fmt::format("{}, by {}", action, by.name), data_text(data)});
+}
+
+void RunDesk::note_on_bench(const std::string& message, const Person& by, const std::string& gyro,
+                            std::uint64_t job) {
+  nlohmann::ordered_json data{{"action", message}, {"user", by.name}, {"uid", by.uid}};
+  if (job != 0) data["job"] = job;
+  bench_events_.push_back(
+      {calendar_(), "info", fmt::format("{}, by {}", message, by.name), gyro, data_text(data)});
+  changed();
+}
+
+void RunDesk::happened(const std::string& severity, const std::string& message,
+                       const std::string& gyro, const std::string& data_json) {
+  const Lock lock(mutex_);
+  bench_events_.push_back({calendar_(), severity, message, gyro, data_json});
+  changed();
+}
+
+std::vector<record::BenchEvent> RunDesk::take_bench_events() {
+  const Lock lock(mutex_);
+  return std::exchange(bench_events_, {});
 }
 
 std::variant<std::uint64_t, RpcError> RunDesk::enqueue(Order order, PlannedProcedure procedure,
@@ -38,21 +70,33 @@ std::variant<std::uint64_t, RpcError> RunDesk::enqueue(Order order, PlannedProce
   const Lock lock(mutex_);
   if (view_.closing) return wrong_state(kStopping);
   auto added = queue_.add(std::move(order), std::move(procedure), by);
-  changed();
+  if (const auto* number = std::get_if<std::uint64_t>(&added)) {
+    const Job& job = *queue_.job(*number);
+    note_on_bench(fmt::format("job {} queued: {}", *number, title_of(job)), by, job.procedure.gyro,
+                  *number);
+  }
   return added;
 }
 
-RunDesk::Refused RunDesk::remove(std::uint64_t job, const Person& /*by*/) {
+RunDesk::Refused RunDesk::remove(std::uint64_t job, const Person& by) {
   const Lock lock(mutex_);
+  const Job* const found = queue_.job(job);
+  const std::string title = found == nullptr ? "" : title_of(*found);
+  const std::string gyro = found == nullptr ? "" : found->procedure.gyro;
   auto refused = queue_.remove(job);
-  changed();
+  if (!refused) {
+    note_on_bench(fmt::format("job {} removed from the queue: {}", job, title), by, gyro, job);
+  }
   return refused;
 }
 
-RunDesk::Refused RunDesk::move(std::uint64_t job, std::uint64_t place) {
+RunDesk::Refused RunDesk::move(std::uint64_t job, std::uint64_t place, const Person& by) {
   const Lock lock(mutex_);
   auto refused = queue_.move(job, place);
-  changed();
+  if (!refused) {
+    note_on_bench(fmt::format("job {} moved to place {} of the queue", job, place), by,
+                  queue_.job(job)->procedure.gyro, job);
+  }
   return refused;
 }
 
@@ -85,7 +129,7 @@ bool RunDesk::can_still_pause() const {
   return false;
 }
 
-RunDesk::Refused RunDesk::resume(const Person& by) {
+RunDesk::Refused RunDesk::resume(const Person& by, const std::optional<SwitchedOn>& switched_on) {
   const Lock lock(mutex_);
   if (view_.run && view_.run->abort_requested) return wrong_state("the run is being aborted");
   // An interlock may have paused it.
@@ -99,8 +143,13 @@ RunDesk::Refused RunDesk::resume(const Person& by) {
   if (queue_.held_because().empty()) {
     return wrong_state(view_.run ? "the run is not paused" : kNothingRuns);
   }
+  if (switched_on && queue_.jobs().empty()) {
+    return wrong_state("no job waits whose gyro could have been switched on");
+  }
+  if (switched_on) queue_.switched_on(*switched_on);
+  const std::string because = queue_.held_because();
   queue_.go_on();
-  note("go on with the queue", by);
+  note(fmt::format("go on with the queue, which was held ({})", because), by);
   return {};
 }
 
@@ -182,6 +231,11 @@ void RunDesk::restore_hold(std::string because) {
   changed();
 }
 
+void RunDesk::restore_count(std::uint64_t jobs_ever) {
+  const Lock lock(mutex_);
+  queue_.restore_count(jobs_ever);
+}
+
 void RunDesk::offer(InterruptedRun run) {
   const Lock lock(mutex_);
   offered_.add(std::move(run));
@@ -232,17 +286,32 @@ bool RunDesk::still_open() {
   return !view_.closing;
 }
 
+void RunDesk::look() {
+  const Lock lock(mutex_);
+  look_ = true;
+  job_or_close_.notify_one();
+}
+
 void RunDesk::attach(procedures::RunEngine& engine) {
   const Lock lock(mutex_);
   engine_ = &engine;
 }
 
-std::optional<Job> RunDesk::next_job() {
+std::optional<Job> RunDesk::next_job(const std::function<void()>& meanwhile) {
   std::unique_lock lock(mutex_);
   pulse_.waits_for_job = true;
-  job_or_close_.wait(lock, [this] {
+  const auto ready = [this] {
     return view_.closing || (!queue_.jobs().empty() && queue_.held_because().empty());
-  });
+  };
+  while (!ready()) {
+    job_or_close_.wait(lock,
+                       [&] { return ready() || (meanwhile && (look_ || !bench_events_.empty())); });
+    if (ready()) break;
+    look_ = false;
+    lock.unlock();
+    meanwhile();
+    lock.lock();
+  }
   pulse_.waits_for_job = false;
   if (view_.closing) {
     deserted_ = true;
@@ -269,7 +338,7 @@ std::optional<Job> RunDesk::next_job() {
   block_points_ = 0;
   end_.reset();
   notes_.clear();
-  note("run", job.by);
+  note("run", job.by, job.job);
   return job;
 }
 
@@ -358,6 +427,14 @@ void RunDesk::run_ended(const Result<procedures::RunSummary>& summary) {
     queue_.hold(fmt::format("{} paused run {}, which ended first", pause_asked_by_, run.run));
   }
   queue_.ended(outcome, ended.safe_state_reached);
+  if (run.run == 0) {
+    bench_events_.push_back(
+        {calendar_(),
+         "error",
+         fmt::format("job {}, {}, could not begin: {}", run.job, run.procedure, ended.reason),
+         run.gyro,
+         {}});
+  }
   ++view_.totals.runs[ended.outcome];
   view_.run.reset();
   view_.question.reset();

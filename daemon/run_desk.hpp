@@ -13,6 +13,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -28,6 +29,7 @@
 #include "daemon/totals.hpp"
 #include "procedures/recorder.hpp"
 #include "procedures/run_engine.hpp"
+#include "record/run_log.hpp"
 
 namespace fogbench::daemon {
 
@@ -115,13 +117,13 @@ class RunDesk {
   std::variant<std::uint64_t, RpcError> enqueue(Order order, PlannedProcedure procedure,
                                                 const Person& by);
   Refused remove(std::uint64_t job, const Person& by);
-  Refused move(std::uint64_t job, std::uint64_t place);
+  Refused move(std::uint64_t job, std::uint64_t place, const Person& by);
   /// Before the next divisible step; where none is left, the queue is held after the run.
   Refused pause(const Person& by);
   /// No run begins after the one that is under way, if any.
   Refused hold(const Person& by);
-  /// Resumes a run that is paused, else the queue.
-  Refused resume(const Person& by);
+  /// Resumes a run that is paused, else the queue; `switched_on`: the next job's gyro, by the way.
+  Refused resume(const Person& by, const std::optional<SwitchedOn>& switched_on = {});
   Refused abort(const Person& by);
   Refused answer(std::uint64_t prompt, bool yes, const Person& by);
   /// No run begins any more; the one under way is aborted. next_job returns.
@@ -133,11 +135,20 @@ class RunDesk {
   /// What an earlier daemon had in its queue, and a hold that somebody had asked of it.
   void restore(Order order, PlannedProcedure procedure, const Person& by);
   void restore_hold(std::string because);
+  void restore_count(std::uint64_t jobs_ever);
   /// Runs that nobody ended, oldest first: each until it is taken up or given up.
   void offer(InterruptedRun run);
   /// Whether a run that was offered may be given up: not when a job takes it up.
   Refused may_discard(std::int64_t run) const;
   void withdraw_offer(std::int64_t run);
+  /// The bench's calendar, Unix time in s, for what happens outside of runs; from any thread.
+  /// Before anything happens.
+  void dated_by(std::function<double()> calendar) { calendar_ = std::move(calendar); }
+  /// Something that no run's record tells; on either thread.
+  void happened(const std::string& severity, const std::string& message,
+                const std::string& gyro = {}, const std::string& data_json = {});
+  /// Several times a second: whoever waits for a job has a look at the bench.
+  void look();
   /// An abort has been asked for and the bench is not safe yet.
   bool aborting() const;
   /// How the bench's thread is: `beats` rises about once a second while it advances.
@@ -155,8 +166,9 @@ class RunDesk {
   bool still_open();
   /// Before the first job; the engine must outlive the last.
   void attach(procedures::RunEngine& engine);
-  /// Waits for one; nothing when the desk is closed.
-  std::optional<Job> next_job();
+  /// Waits for one; nothing when the desk is closed. Calls `meanwhile` after each look(), and when
+  /// something has happened that it may take.
+  std::optional<Job> next_job(const std::function<void()>& meanwhile = {});
   void run_begun(std::int64_t run);
   void progressed(const procedures::Progress& progress);
   void saw(const procedures::MonitorRow& row);
@@ -170,6 +182,8 @@ class RunDesk {
   void run_ended(const Result<procedures::RunSummary>& summary);
   /// What was done since it was last asked.
   std::vector<Note> take_notes();
+  /// What has happened outside of runs, likewise.
+  std::vector<record::BenchEvent> take_bench_events();
 
   std::uint64_t ask(const std::string& text);
   std::optional<bool> answer_to(std::uint64_t prompt) const;
@@ -177,7 +191,10 @@ class RunDesk {
 
  private:
   /// All with the mutex held.
-  void note(const std::string& action, const Person& by);
+  /// In the run's record, or where there is no run in the bench's.
+  void note(const std::string& action, const Person& by, std::uint64_t job = 0);
+  void note_on_bench(const std::string& message, const Person& by, const std::string& gyro = {},
+                     std::uint64_t job = 0);
   /// Whether the run has a step before which it can hold.
   bool can_still_pause() const;
   void changed() {
@@ -190,6 +207,7 @@ class RunDesk {
   procedures::RunEngine* engine_ = nullptr;
   Pulse pulse_;
   bool deserted_ = false;
+  bool look_ = false;
   bool engine_runs_ = false;  ///< between run_begun and run_ended
   JobQueue queue_;
   std::uint64_t prompts_ever_ = 0;
@@ -205,6 +223,8 @@ class RunDesk {
   std::optional<procedures::RunEnd> end_;
   std::deque<EndedRun> ended_;
   std::vector<Note> notes_;
+  std::function<double()> calendar_ = [] { return 0.0; };
+  std::vector<record::BenchEvent> bench_events_;
 };
 
 }  // namespace fogbench::daemon

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -30,6 +31,9 @@
 
 namespace fogbench::daemon {
 namespace {
+
+/// What a start and a stop are in the bench's record.
+constexpr auto kStarted = R"({"daemon":"started"})", kStopped = R"({"daemon":"stopped"})";
 
 /// How often a missing instrument is tried again, and how soon an end is noticed meanwhile.
 constexpr std::chrono::milliseconds kBetweenTries{1000}, kBetweenLooks{100};
@@ -98,15 +102,49 @@ void report(const drivers::SafetyReport& safety, std::string& said) {
   said = std::move(text);
 }
 
+/// What the run log says of the daemon before this one, for the bench's record.
+Result<std::string> last_end(const std::filesystem::path& store, const std::string& bench) {
+  const auto log = record::RunLogReader::open(store);
+  if (!log) return log.error();
+  const auto events = (*log)->bench_events();
+  if (!events) return events.error();
+  for (auto event = events->rbegin(); event != events->rend(); ++event) {
+    if (event->bench != bench) continue;
+    if (event->data_json == kStopped) return std::string();
+    if (event->data_json != kStarted) continue;
+    return fmt::format(
+        "; the one that started at {} did not stop by itself: it was killed, it "
+        "crashed, or the power was cut",
+        drivers::utc_text(event->unix_s));
+  }
+  return std::string();
+}
+
+/// The latest date in the run log; 0 where there is none.
+double last_trace_unix_s(const std::filesystem::path& store) {
+  const auto log = record::RunLogReader::open(store);
+  if (!log) return 0.0;  // whoever writes to it says what is wrong
+  double last = 0.0;
+  const auto events = (*log)->bench_events();
+  if (events && !events->empty()) last = events->back().unix_s;
+  const auto runs = (*log)->runs();
+  if (!runs || runs->empty()) return last;
+  const record::StoredRun& run = runs->back();
+  const auto zero = (*log)->zero_unix_s(run);
+  const auto trace = (*log)->last_time(run.run);
+  return zero && trace ? std::max(last, *zero + *trace) : last;
+}
+
 /// Until every actuator is off and every instrument has begun, or the desk closes: what is missing
 /// may be plugged in any minute.
-bool begin_bench(Session& session, RunDesk& desk, std::string& said) {
+bool begin_bench(Session& session, RunDesk& desk, DeskRecorder& record, std::string& said) {
   std::string missing;
   for (;;) {
     const Status begun = session.begin();
     const drivers::SafetyReport safety = session.make_safe();
     report(safety, said);
     if (begun && safety.reached()) {
+      if (!missing.empty()) desk.happened("info", "every instrument is there, the bench is safe");
       desk.bench_waits_for({});
       return true;
     }
@@ -115,7 +153,9 @@ bool begin_bench(Session& session, RunDesk& desk, std::string& said) {
       missing = error.message;
       spdlog::error("{}; waiting for it", missing);
       desk.bench_waits_for(missing);
+      desk.happened("warning", missing + "; the bench waits for it");
     }
+    record.record_bench_events();
     for (auto waited = kBetweenLooks; waited <= kBetweenTries; waited += kBetweenLooks) {
       if (!desk.still_open()) return false;
       drivers::SteadyClock().sleep_for(kBetweenLooks);
@@ -124,10 +164,16 @@ bool begin_bench(Session& session, RunDesk& desk, std::string& said) {
 }
 
 /// The bench's thread.
-void run_jobs(Session& session, RunDesk& desk, DeskOperator& person, procedures::Recorder& record,
+void run_jobs(Session& session, RunDesk& desk, DeskOperator& person, DeskRecorder& record,
               std::string said) {
+  const auto meanwhile = [&] {
+    const std::string heard = session.listen();
+    if (!heard.empty()) desk.happened("info", heard);
+    record.record_bench_events();
+  };
   try {
-    if (begin_bench(session, desk, said)) {
+    record.record_bench_events();
+    if (begin_bench(session, desk, record, said)) {
       session.record_in(record);
       procedures::RunEngine& engine = session.engine();
       engine.on_progress([&desk, &session](const procedures::Progress& now) {
@@ -138,7 +184,7 @@ void run_jobs(Session& session, RunDesk& desk, DeskOperator& person, procedures:
       person.attach(engine);
       spdlog::info("the bench is ready");
     }
-    while (const auto job = desk.next_job()) {
+    while (const auto job = desk.next_job(meanwhile)) {
       const std::string& name = job->procedure.plan.procedure;
       spdlog::info("job {}, {}, gyro \"{}\": begins, asked for by {}", job->job, name,
                    job->procedure.gyro, job->by.name);
@@ -154,7 +200,7 @@ void run_jobs(Session& session, RunDesk& desk, DeskOperator& person, procedures:
       }
       desk.run_ended(summary);
       // What could not be reached carries what it carried, whether or not another job comes.
-      if (!session.engine().left_safe()) begin_bench(session, desk, said);
+      if (!session.engine().left_safe()) begin_bench(session, desk, record, said);
     }
   } catch (const std::exception& error) {
     end_at_once(fmt::format("an unexpected error: {}", error.what()), &session);
@@ -174,6 +220,7 @@ void serve_clients(ControlServer& server, const ControlMethods& methods, RunDesk
       switch (signal->means) {
         case StopSignals::Means::kAbort:
           spdlog::info("{}: stopping", signal->name);
+          desk.happened("info", signal->name + ": the daemon stops");
           desk.close({signal->name, static_cast<std::uint32_t>(geteuid())});
           report();
           break;
@@ -208,6 +255,7 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   }
   drivers::SteadyClock clock;
   StopSignals signals(clock);
+  if (speed != Speed::kRealtime) setup.calendar_from_unix_s = std::ceil(last_trace_unix_s(store));
   const Setup planned_for = setup;
   RunDesk desk;
   DeskOperator person(desk);
@@ -228,7 +276,21 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
   if (!metrics) return metrics.error();
   const auto log = record::RunLog::open(store);
   if (!log) return log.error();
-  DeskRecorder record(**log, desk);
+  const std::string bench = planned_for.bench.name;
+  DeskRecorder record(**log, desk, [&log, &bench](const record::BenchEvent& event) {
+    return (*log)->bench_event(bench, event);
+  });
+  // The bench's clock follows the machine's calendar on the other thread, or never.
+  desk.dated_by([&bench_clock = (*session)->clock(), real = speed == Speed::kRealtime] {
+    const auto now = real ? drivers::SteadyClock::system_calendar() : bench_clock.wall_now();
+    return std::chrono::duration<double>(now.time_since_epoch()).count();
+  });
+  const auto before = last_end(store, bench);
+  if (!before) return before.error();
+  desk.happened(
+      before->empty() ? "info" : "warning",
+      fmt::format("fogbenchd {} started, bench {}: {}{}", FOGBENCH_VERSION, bench, said, *before),
+      {}, kStarted);
   if (const Status taken = take_over(planned_for, store, *queue, desk); !taken) return taken;
   spdlog::info("bench {}; run log {}{}; serving {}", planned_for.bench.name, store.string(),
                planned_for.simulated ? fmt::format(", seed {}", seed) : "", (*socket)->name());
@@ -245,13 +307,21 @@ Status serve(Setup setup, std::uint64_t seed, const std::filesystem::path& store
     manager.report(desk);
     methods.totals().connections = server.connections();
     methods.totals().connections_refused = server.refused();
+    desk.look();
     queue->update(desk);
     (*metrics)->update([&] { return methods.metrics(); });
   });
   bench_thread.join();
 
   // Once more: an instrument may have come back since.
-  if (const Status safe = (*session)->make_safe().status(); !safe) return safe;
+  const Status safe = (*session)->make_safe().status();
+  desk.happened(safe ? "info" : "error",
+                "fogbenchd stopped; the bench is " +
+                    (safe ? std::string("in its safe state")
+                          : "NOT in its safe state: " + safe.error().message),
+                {}, kStopped);
+  record.record_bench_events();
+  if (!safe) return safe;
   spdlog::info("stopped; the bench is in its safe state");
   return {};
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <set>
@@ -152,13 +154,19 @@ Result<std::unique_ptr<Session>> Session::attach(Setup setup, std::uint64_t seed
     // Starts today, so that the record's dates mean something; nothing measured depends on it.
     session->clock_ = std::make_unique<drivers::VirtualClock>(drivers::SteadyClock().wall_now());
   } else {
-    session->clock_ = std::make_unique<drivers::SteadyClock>(speed.factor);
+    using drivers::SteadyClock;
+    const SteadyClock::WallTime from{std::chrono::floor<std::chrono::milliseconds>(
+        std::chrono::duration<double>(made.calendar_from_unix_s))};
+    session->clock_ = std::make_unique<SteadyClock>(
+        speed.factor, [from] { return std::max(from, SteadyClock::system_calendar()); });
   }
   auto transports =
       made.simulated ? simulator::simulate_bench(made.bench, made.scenario, seed, *session->clock_)
                      : drivers::open_ports(made.bench, *session->clock_);
   if (!transports) return transports.error();
-  auto bench = drivers::attach_bench(made.bench, std::move(*transports), *session->clock_, person);
+  session->exchange_gyro_ = transports->exchange_gyro;
+  auto bench =
+      drivers::attach_bench(made.bench, std::move(*transports), *session->clock_, session->person_);
   if (!bench) return bench.error();
   session->bench_ = std::move(*bench);
   return session;
@@ -166,6 +174,8 @@ Result<std::unique_ptr<Session>> Session::attach(Setup setup, std::uint64_t seed
 
 void Session::record_in(procedures::Recorder& record) {
   engine_ = std::make_unique<procedures::RunEngine>(setup_.bench, bench_, *clock_, person_, record);
+  person_.attach(*engine_);
+  line_.emplace(*bench_.gyro, *clock_);
   if (speed_ != Speed::kMaximum) engine_->wait_for_record();
 }
 
@@ -214,6 +224,28 @@ bool Session::send_last_zero() noexcept {
   return true;
 }
 
+std::string Session::listen() {
+  return line_ ? line_->listen() : std::string();
+}
+
+Status Session::take_gyro(const PlannedProcedure& procedure, procedures::RunHeader& header) {
+  listen();  // a silence may have ended just now
+  const std::string& before = line_->gyro();
+  const bool other = !before.empty() && !procedure.gyro.empty() && procedure.gyro != before;
+  const bool exchanged = other && exchange_gyro_;
+  if (exchanged) exchange_gyro_();
+  auto taken = line_->take(procedure.gyro, procedure.switched_on, exchanged);
+  if (!taken) return taken.error();
+  header.remarks = std::move(taken->remarks);
+  if (taken->doubtful) {
+    header.question = fmt::format(
+        "Gyro {} is to be measured, and the stream has not stopped since gyro {} was: is gyro {} "
+        "on the bench?",
+        procedure.gyro, taken->before, procedure.gyro);
+  }
+  return {};
+}
+
 Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure,
                                             const std::string& operator_name) {
   procedures::RunHeader header;
@@ -227,6 +259,7 @@ Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure,
   header.operator_name = operator_name;
   header.software_version = FOGBENCH_VERSION;
   clock_->follow_calendar();
+  if (const Status taken = take_gyro(procedure, header); !taken) return taken.error();
   header.started_at = drivers::utc_text(clock_->wall_now());
   header.frame_rate_hz = bench_.gyro->frame_rate_hz();
   header.reference_rate_deg_per_h = setup_.bench.gyro.reference_rate.value;
@@ -238,7 +271,9 @@ Result<procedures::RunSummary> Session::run(const PlannedProcedure& procedure,
     if (!continuation) return continuation.error();
     header.continues = std::move(*continuation);
   }
-  return engine_->run(procedure.plan, header);
+  auto summary = engine_->run(procedure.plan, header);
+  line_->heard();
+  return summary;
 }
 
 std::uint64_t random_seed() {

@@ -14,6 +14,8 @@
 #include "config/bench.hpp"
 #include "config/result.hpp"
 #include "config/scenario.hpp"
+#include "daemon/gyro_on_line.hpp"
+#include "daemon/operator_on_record.hpp"
 #include "drivers/clock.hpp"
 #include "drivers/instruments.hpp"
 #include "drivers/open_bench.hpp"
@@ -38,6 +40,9 @@ struct Setup {
   std::string scenario_json;  ///< empty on a real bench
   /// false: the instruments are reached where the bench's file says.
   bool simulated = true;
+  /// Of a bench faster than real, whose calendar is its own: Unix time in s at which it begins,
+  /// where the machine's is earlier. So what a run log tells of two daemons stays in its order.
+  double calendar_from_unix_s = 0.0;
 };
 
 /// Errors: kBadInput.
@@ -61,6 +66,7 @@ struct PlannedProcedure {
   std::string procedure_json;  ///< the texts of its files and the parameters given, for the record
   std::optional<TakenUp> takes_up;
   std::string gyro;  ///< serial number of the one that it measures; empty: nobody said
+  std::optional<SwitchedOn> switched_on;  ///< as somebody says; empty: as the line says
 };
 
 /// For the bench's gyro. Errors: kBadInput, kLimit.
@@ -112,6 +118,9 @@ class Session {
   procedures::RunEngine& engine() { return *engine_; }
   /// The bench's. Each run takes the machine's calendar over when it begins.
   drivers::Clock& clock() { return *clock_; }
+  /// Between runs, several times a second at best: hears whether the gyro falls silent, which is
+  /// how it is known that it was switched off. What it says has happened, empty for nothing.
+  std::string listen();
   /// Of the gyro's stream, on the thread of run().
   const drivers::StreamStatistics& stream() const { return bench_.gyro->statistics(); }
 
@@ -123,16 +132,21 @@ class Session {
   Session(Setup setup, std::uint64_t seed, Speed speed, drivers::Operator& person)
       : setup_(std::move(setup)), seed_(seed), speed_(speed), person_(person) {}
 
+  /// Before a run: whose frames these are, and since when it operates.
+  Status take_gyro(const PlannedProcedure& procedure, procedures::RunHeader& header);
+
   static Result<std::unique_ptr<Session>> begun(Setup setup, std::uint64_t seed, Speed speed,
                                                 drivers::Operator& person);
 
   Setup setup_;
   std::uint64_t seed_;
   Speed speed_;
-  drivers::Operator& person_;
+  OperatorOnRecord person_;
   std::unique_ptr<drivers::Clock> clock_;
   std::unique_ptr<record::RunLog> log_;  ///< null when the record is the caller's
   drivers::Bench bench_;
+  std::function<void()> exchange_gyro_;  ///< of a simulated bench
+  std::optional<GyroOnLine> line_;       ///< once the bench has begun
   std::unique_ptr<procedures::RunEngine> engine_;
 };
 

@@ -10,6 +10,7 @@ namespace fogbench::daemon {
 class SimulatedOperator final : public drivers::Operator {
  public:
   Result<bool> confirm(const std::string&) override { return true; }
+  std::string name() const override { return "the simulation"; }
 };
 
 }  // namespace fogbench::daemon

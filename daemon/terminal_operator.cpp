@@ -4,6 +4,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "daemon/access.hpp"
+
 namespace fogbench::daemon {
 namespace {
 
@@ -21,6 +23,10 @@ Result<bool> TerminalOperator::confirm(const std::string& prompt) {
     if (aborted_() || *line == "n" || *line == "no") return false;
     if (*line == "y" || *line == "yes") return true;
   }
+}
+
+std::string TerminalOperator::name() const {
+  return user_name(geteuid()) + " at the terminal";
 }
 
 Result<std::string> TerminalOperator::read_line(const std::string& prompt) {

@@ -18,6 +18,7 @@ class TerminalOperator final : public drivers::Operator {
 
   /// Asks until the answer is yes or no. An abort is a no; kDevice when nobody can answer.
   Result<bool> confirm(const std::string& prompt) override;
+  std::string name() const override;
 
  private:
   Result<std::string> read_line(const std::string& prompt);

@@ -51,6 +51,10 @@ struct RunHeader {
   double reference_rate_deg_per_h = 0.0;
   std::optional<Continuation> continues;
   std::vector<Auxiliary> auxiliary;  ///< of a run that is read: empty, its points name them
+  /// Of the gyro before the first step, each an event: since when it operates, and how that is
+  /// known. Empty in a run that is read.
+  std::vector<std::string> remarks;
+  std::string question;  ///< put to the operator before the first step; empty: none
 };
 
 /// An instrument as it identified itself, with its certificate.

@@ -25,17 +25,18 @@ class RunEngine::Run {
   /// An indivisible block is begun at most this often.
   static constexpr int kBlockTries = 3;
 
-  /// `points_before`: those of the run that is taken up.
-  Run(RunEngine& engine, const Plan& plan, std::size_t points_before)
+  /// All must outlive the run.
+  Run(RunEngine& engine, const Plan& plan, const RunHeader& header)
       : engine_(engine),
         plan_(plan),
+        header_(header),
         watch_(engine.config_, engine.bench_, engine.clock_, engine.recorder_,
                [&engine] { return engine.abort_requested_.load(); }),
         session_(
             engine.config_, engine.bench_, engine.operator_, watch_,
             [this] { return after_tick(); }, [this](const Point& point) { return record(point); }),
         remaining_(plan),
-        points_before_(points_before),
+        points_before_(header.continues ? header.continues->points : 0),
         started_(engine.clock_.now()),
         step_started_(started_) {
     engine_.run_ = this;
@@ -50,10 +51,15 @@ class RunEngine::Run {
   /// The safe state and the end of the record. `outcome` is that of execute().
   Result<RunEnd> finish(const Status& outcome);
   std::size_t points() const { return points_; }
+  Status note(const std::string& message, const std::string& data_json) {
+    return watch_.event("info", message, data_json);
+  }
   Status keep_watch() { return session_.tick(engine_.clock_.now() + BenchWatch::kPeriod); }
 
  private:
   Status execute_steps();
+  /// What the header has to say and to ask before the first step.
+  Status open();
   /// The next step, or what comes before it.
   Status advance();
   Result<StepResult> run_step(std::size_t index);
@@ -79,10 +85,11 @@ class RunEngine::Run {
 
   RunEngine& engine_;
   const Plan& plan_;
+  const RunHeader& header_;
   BenchWatch watch_;
   RunSession session_;
   RemainingTime remaining_;
-  std::size_t points_before_;
+  std::size_t points_before_;  ///< those of the run that is taken up
   drivers::Clock::Instant started_, step_started_;
   std::size_t step_ = 0;
   std::string says_;
@@ -125,7 +132,8 @@ Status RunEngine::Run::execute() {
 }
 
 Status RunEngine::Run::execute_steps() {
-  const auto started = session_.start();
+  auto started = session_.start();
+  if (started) started = open();
   if (!started) return started;
   while (step_ < plan_.steps.size()) {
     Status advanced = advance();
@@ -141,6 +149,15 @@ Status RunEngine::Run::execute_steps() {
                  "for its step"};
   }
   return {};
+}
+
+Status RunEngine::Run::open() {
+  for (const std::string& remark : header_.remarks) {
+    if (const Status noted = watch_.event("info", remark); !noted) return noted;
+  }
+  if (header_.question.empty()) return {};
+  says_ = "waits for an answer before the first step";
+  return session_.ask(header_.question);
 }
 
 Status RunEngine::Run::advance() {
@@ -461,6 +478,10 @@ Result<std::vector<InstrumentRecord>> RunEngine::identify_instruments(
   return records;
 }
 
+Status RunEngine::note(const std::string& message, const std::string& data_json) {
+  return run_ == nullptr ? Status{} : run_->note(message, data_json);
+}
+
 Status RunEngine::keep_watch() {
   if (run_ == nullptr) return Error{ErrorCode::kDevice, "no run is under way"};
   return run_->keep_watch();
@@ -491,7 +512,7 @@ Result<RunSummary> RunEngine::run(const Plan& plan, const RunHeader& header) {
   if (!number) return not_begun(number.error());
   state_ = *running;
 
-  Run run(*this, plan, header.continues ? header.continues->points : 0);
+  Run run(*this, plan, header);
   const auto end = run.finish(run.execute());
   if (!end) return end.error();
   return RunSummary{*number, *end, run.points()};

@@ -90,6 +90,9 @@ class RunEngine {
   /// that is gone) means that nobody need answer any more: confirm() returns it.
   Status keep_watch();
 
+  /// An event of the run under way; nothing where there is none. Called from within confirm().
+  Status note(const std::string& message, const std::string& data_json);
+
   // Thread- and signal-safe requests; take effect within BenchWatch::kNap (abort) or before the
   // next step outside an indivisible block (pause). One asked for before run() holds for that run,
   // and for no later one.

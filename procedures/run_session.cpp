@@ -173,12 +173,16 @@ Result<StepResult> RunSession::act(const Average& step) {
 }
 
 Result<StepResult> RunSession::act(const Prompt& step) {
-  const auto confirmed = operator_.confirm(step.text);
-  if (!confirmed) return confirmed.error();
-  if (!*confirmed) {
-    return Error{ErrorCode::kAborted, "the operator declined: " + step.text};
-  }
+  const Status asked = ask(step.text);
+  if (!asked) return asked.error();
   return StepResult{};
+}
+
+Status RunSession::ask(const std::string& text) {
+  const auto confirmed = operator_.confirm(text);
+  if (!confirmed) return confirmed.error();
+  if (*confirmed) return {};
+  return Error{ErrorCode::kAborted, "the operator declined: " + text};
 }
 
 Result<StepResult> RunSession::measure(Seconds duration, const PointLabels& labels) {

@@ -52,6 +52,9 @@ class RunSession {
   /// be switched off and the step begun again when it is back.
   Result<StepResult> run(const PlannedStep& step);
 
+  /// kAborted when the operator declines.
+  Status ask(const std::string& text);
+
   /// Why an interlock wants the run to pause, once; empty when none does.
   std::string take_pause() { return std::exchange(pause_wanted_, {}); }
   /// Interlocks that keep the run paused: not cleared yet. Empty when there are none.

@@ -232,6 +232,20 @@ Status RunLog::event(double time_s, const std::string& severity, const std::stri
   });
 }
 
+Status RunLog::bench_event(const std::string& bench, const BenchEvent& event) {
+  auto insert = database_->prepare(
+      "INSERT INTO bench_events (bench, unix_s, severity, message, gyro_serial_number, data_json) "
+      "VALUES (?, ?, ?, ?, ?, ?)");
+  if (!insert) return insert.error();
+  return commit(Sync::kFull, [&] {
+    insert->bind(bench).bind(event.unix_s).bind(event.severity).bind(event.message);
+    for (const std::string* text : {&event.gyro_serial_number, &event.data_json}) {
+      text->empty() ? insert->bind_null() : insert->bind(*text);
+    }
+    return insert->run();
+  });
+}
+
 Status RunLog::point(const Point& point) {
   return commit(Sync::kFull, [&] {
     Statement& insert = statements_->point;

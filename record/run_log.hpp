@@ -19,6 +19,16 @@
 
 namespace fogbench::record {
 
+/// What happened on a bench outside its runs: who queued what, who was refused, a daemon that
+/// began.
+struct BenchEvent {
+  double unix_s = 0.0;  ///< by the bench's calendar
+  std::string severity = "info";
+  std::string message;
+  std::string gyro_serial_number;  ///< the one that it is about; empty: none
+  std::string data_json;           ///< may be empty
+};
+
 class RunLog final : public procedures::Recorder {
  public:
   /// Makes the store when there is none. Errors: as open_store_for_writing.
@@ -37,6 +47,9 @@ class RunLog final : public procedures::Recorder {
   Status monitor(const procedures::MonitorRow& row) override;
   Status gyro_samples(const drivers::GyroBlock& block) override;
   Status end_run(const procedures::RunEnd& end) override;
+
+  /// On disk when it returns, whether or not a run is under way.
+  Status bench_event(const std::string& bench, const BenchEvent& event);
 
   /// Closes a run that nobody ended and nobody will take up.
   Status give_up(std::int64_t run, const std::string& reason);

@@ -288,6 +288,22 @@ Result<std::vector<StoredEvent>> RunLogReader::events(std::int64_t run) {
   });
 }
 
+Result<std::vector<StoredBenchEvent>> RunLogReader::bench_events() {
+  const auto known =
+      database_->integer("SELECT count(*) FROM sqlite_master WHERE name = 'bench_events'");
+  if (!known) return known.error();
+  if (*known == 0) return std::vector<StoredBenchEvent>{};
+  auto select = database_->prepare(
+      "SELECT unix_s, severity, message, gyro_serial_number, data_json, bench FROM bench_events "
+      "ORDER BY event");
+  if (!select) return select.error();
+  return collect<StoredBenchEvent>(*select, [&] {
+    return StoredBenchEvent{
+        {select->real(0), select->text(1), select->text(2), select->text(3), select->text(4)},
+        select->text(5)};
+  });
+}
+
 Result<std::vector<StoredStep>> RunLogReader::steps(std::int64_t run) {
   auto select = database_->prepare(
       "SELECT path, says, started_s, ended_s, evidence FROM steps WHERE run = ? ORDER BY step");

@@ -11,6 +11,7 @@
 
 #include "config/result.hpp"
 #include "procedures/recorder.hpp"
+#include "record/run_log.hpp"
 #include "record/sqlite.hpp"
 
 namespace fogbench::record {
@@ -41,6 +42,10 @@ struct StoredEvent {
   std::string severity, message, data_json;
 };
 
+struct StoredBenchEvent : BenchEvent {
+  std::string bench;
+};
+
 struct StoredStep {
   std::string path, says;
   double started_s = 0.0, ended_s = 0.0;  ///< NaN: not ended
@@ -66,6 +71,8 @@ class RunLogReader {
   Result<std::vector<StoredPoint>> chain_points(std::int64_t run);
   Result<std::vector<procedures::InstrumentRecord>> instruments(std::int64_t run);
   Result<std::vector<StoredEvent>> events(std::int64_t run);
+  /// Of all benches, in the order in which they were written; none in an older log.
+  Result<std::vector<StoredBenchEvent>> bench_events();
   Result<std::vector<StoredStep>> steps(std::int64_t run);
   /// The run's last trace, seconds since power-on; 0 when there is none.
   /// When the run's times were 0, as Unix time in s, by the calendar that its dates follow.

@@ -80,6 +80,15 @@ Result<bool> is_blank(Database& database) {
   return *application == 0 && *tables == 0;
 }
 
+/// What happens on a bench outside its runs came later than the second version, and takes nothing
+/// from whoever does not know it.
+Status add_bench_events(Database& database) {
+  return database.execute(
+      "CREATE TABLE IF NOT EXISTS bench_events (event INTEGER PRIMARY KEY, bench TEXT NOT NULL, "
+      "unix_s REAL NOT NULL, severity TEXT NOT NULL, message TEXT NOT NULL, "
+      "gyro_serial_number TEXT, data_json TEXT)");
+}
+
 /// Changes nothing where another program has made it meanwhile.
 Status create_schema(Database& database) {
   // Pages of 16 KiB suit blobs of some 200 KiB. WAL is kept in the file from here on.
@@ -104,6 +113,7 @@ Status create_schema(Database& database) {
       kTables, real_columns(procedures::point_channels()),
       real_columns(procedures::monitor_channels()), kApplicationId, kSchemaVersion);
   if (const Status ok = database.execute(sql); !ok) return ok;
+  if (const Status ok = add_bench_events(database); !ok) return ok;
   if (const Status ok = describe(database, "points", procedures::point_channels()); !ok) return ok;
   if (const Status ok = describe(database, "monitor", procedures::monitor_channels()); !ok)
     return ok;
@@ -262,6 +272,7 @@ Result<std::unique_ptr<Database>> open_store_for_writing(const fs::path& path) {
   if (const Status ok = check_schema(**database, path); !ok) return ok.error();
   if (const Status ok = add_new_columns(**database); !ok) return ok.error();
   if (const Status ok = add_continuations(**database); !ok) return ok.error();
+  if (const Status ok = add_bench_events(**database); !ok) return ok.error();
   if (const Status ok = (*database)->execute("PRAGMA synchronous = FULL"); !ok) return ok.error();
   return database;
 }

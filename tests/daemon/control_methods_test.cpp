@@ -288,5 +288,32 @@ TEST_F(ControlMethodsTest, AnInterruptedRunIsTakenUpOrGivenUp) {
   EXPECT_TRUE((*log)->run(1)->end) << "nobody offers it again";
 }
 
+TEST_F(ControlMethodsTest, ARefusedOrderIsOnRecordAndOneWhoInsistsIsCounted) {
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(refusal("abort", json::object(), observer_), RpcCode::kPermission);
+  }
+  EXPECT_EQ(refusal("pause", json::object(), observer_), RpcCode::kPermission);
+  const auto events = desk_.take_bench_events();
+  ASSERT_EQ(events.size(), 2U) << "once a minute for each method";
+  EXPECT_EQ(events[0].message, "refused: uid 4294967000 may not abort");
+  EXPECT_EQ(events[0].severity, "warning");
+  EXPECT_EQ(events[1].message, "refused: uid 4294967000 may not pause");
+}
+
+TEST_F(ControlMethodsTest, SinceWhenAGyroIsOnIsATimeOfTheCalendar) {
+  const json order{{"procedure", procedure(R"({"step": "wait", "duration_s": 1})")},
+                   {"gyro_on_since", "2026-11-29T18:00:00Z"}};
+  result("run", order);
+  const auto kept = desk_.waiting().orders.at(0).first.switched_on;
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->unix_s, 1795975200.0);
+  for (const json& wrong : {json(5), json("yesterday"), json("2026-13-01T00:00:00Z")}) {
+    json bad = order;
+    bad["gyro_on_since"] = wrong;
+    EXPECT_EQ(refusal("run", bad, operator_), RpcCode::kInvalidParams) << wrong;
+    EXPECT_EQ(refusal("resume", {{"gyro_on_since", wrong}}, operator_), RpcCode::kInvalidParams);
+  }
+}
+
 }  // namespace
 }  // namespace fogbench::daemon

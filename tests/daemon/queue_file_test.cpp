@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "config/output_file.hpp"
 #include "record/run_log.hpp"
 #include "tests/support/source_tree.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -40,6 +41,7 @@ class QueueFileTest : public testing::Test {
     EXPECT_TRUE(file) << file.error().message;
     return file;
   }
+  nlohmann::json kept() const { return nlohmann::json::parse(support::read_text(file_)); }
   Status load(RunDesk& desk) { return open()->load(desk, setup_, store_); }
 
   support::TemporaryFolder folder_;
@@ -68,7 +70,7 @@ TEST_F(QueueFileTest, EachJobKeepsItsNumber) {
   RunDesk desk;
   for (int i = 0; i < 3; ++i) enqueue(desk, ready("static-record"), {});
   EXPECT_FALSE(desk.remove(1, {"alice", geteuid()}));
-  EXPECT_FALSE(desk.move(3, 1));
+  EXPECT_FALSE(desk.move(3, 1, {"alice", geteuid()}));
   open()->update(desk);
   RunDesk next;
   ASSERT_TRUE(load(next));
@@ -77,6 +79,31 @@ TEST_F(QueueFileTest, EachJobKeepsItsNumber) {
   EXPECT_EQ(next.queue()[1].job, 2U);
   enqueue(next, ready("static-record"), {});
   EXPECT_EQ(next.queue()[2].job, 4U) << "no number is given twice";
+}
+
+TEST_F(QueueFileTest, NumbersGoOnThoughNothingWaited) {
+  RunDesk desk;
+  enqueue(desk, ready("static-record"), {});
+  EXPECT_FALSE(desk.remove(1, {"alice", geteuid()}));
+  open()->update(desk);
+  RunDesk next;
+  ASSERT_TRUE(load(next));
+  EXPECT_TRUE(next.queue().empty());
+  EXPECT_TRUE(next.view().held_because.empty());
+  Order warm{ready("static-record"), {}};
+  warm.switched_on = SwitchedOn{1234.5, "bob"};
+  enqueue(next, warm);
+  EXPECT_EQ(next.queue()[0].job, 2U);
+  open()->update(next);
+  RunDesk third;
+  ASSERT_TRUE(load(third));
+  const auto kept = third.waiting().orders.at(0).first.switched_on;
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->unix_s, 1234.5);
+  EXPECT_EQ(kept->by, "bob");
+  ASSERT_TRUE(config::write_file(file_, R"({"jobs": [], "last_job": "seven"})"));
+  RunDesk fourth;
+  EXPECT_THAT(load(fourth).error().message, testing::HasSubstr("/last_job: expected the number"));
 }
 
 TEST_F(QueueFileTest, EachJobKeepsItsGyroAndOneWithoutTakesTheNewDaemons) {
@@ -103,7 +130,7 @@ TEST_F(QueueFileTest, AHoldTheOrderAndWhatRunsAfterAFailureOutliveTheDaemon) {
   Order stubborn{ready("static-record"), {}};
   stubborn.keep_going = true;
   enqueue(desk, stubborn);
-  EXPECT_FALSE(desk.move(2, 1));
+  EXPECT_FALSE(desk.move(2, 1, {"alice", geteuid()}));
   EXPECT_FALSE(desk.hold({"alice", geteuid()}));
   open()->update(desk);
   RunDesk next;
@@ -146,7 +173,7 @@ TEST_F(QueueFileTest, AnEmptyQueueLeavesNoFile) {
   EXPECT_TRUE(std::filesystem::exists(file_));
   EXPECT_FALSE(desk.remove(1, {"alice", geteuid()}));
   file.update(desk);
-  EXPECT_FALSE(std::filesystem::exists(file_));
+  EXPECT_TRUE(kept()["jobs"].empty());
   RunDesk next;
   EXPECT_TRUE(file.load(next, setup_, store_));
   EXPECT_TRUE(next.waiting().orders.empty());
@@ -163,7 +190,7 @@ TEST_F(QueueFileTest, AJobThatWasTakenStaysUntilItsRunIsOnRecord) {
   EXPECT_EQ(next.waiting().orders.size(), 1U);
   desk.run_begun(1);
   file.update(desk);
-  EXPECT_FALSE(std::filesystem::exists(file_));
+  EXPECT_TRUE(kept()["jobs"].empty());
 }
 
 TEST_F(QueueFileTest, BelongsToOneProcessByWhateverNameTheStoreIsCalled) {

@@ -121,6 +121,11 @@ TEST_F(RunDeskTest, ARunAsksAndTheRecordSaysWhoDidWhat) {
   leave();
   EXPECT_EQ(record_.headers.at(0).operator_name, "alice");
   EXPECT_TRUE(record_.has_event("run, by alice"));
+  const auto asked =
+      std::find_if(record_.events.begin(), record_.events.end(),
+                   [](const auto& event) { return event.message == "asks: Turn the gyro."; });
+  ASSERT_NE(asked, record_.events.end()) << "when the prompt appeared";
+  EXPECT_EQ(nlohmann::json::parse(asked->data_json).at("asks"), "Turn the gyro.");
   const auto answered =
       std::find_if(record_.events.begin(), record_.events.end(), [](const auto& event) {
         return event.message == "answer yes to \"Turn the gyro.\", by bob";
@@ -129,6 +134,38 @@ TEST_F(RunDeskTest, ARunAsksAndTheRecordSaysWhoDidWhat) {
   const auto data = nlohmann::json::parse(answered->data_json);
   EXPECT_EQ(data.at("user"), "bob");
   EXPECT_EQ(data.at("uid"), 1001);
+}
+
+TEST_F(RunDeskTest, WhatBelongsToNoRunIsTheBenchs) {
+  double now_s = 1000.0;
+  RunDesk desk;
+  desk.dated_by([&now_s] { return now_s; });
+  const auto queued = [&] {
+    return std::get<std::uint64_t>(desk.enqueue({}, planned(kMeasures), alice_));
+  };
+  queued();
+  queued();
+  now_s = 1001.0;
+  EXPECT_FALSE(desk.move(2, 1, bob_));
+  EXPECT_FALSE(desk.remove(2, bob_));
+  EXPECT_TRUE(desk.remove(9, bob_));
+  EXPECT_FALSE(desk.hold(alice_));
+  EXPECT_FALSE(desk.resume(bob_));
+  std::vector<std::string> said;
+  const auto events = desk.take_bench_events();
+  for (const record::BenchEvent& event : events) said.push_back(event.message);
+  EXPECT_THAT(said, testing::ElementsAre(
+                        "job 1 queued: measures, gyro SIM-FOG-1, by alice",
+                        "job 2 queued: measures, gyro SIM-FOG-1, by alice",
+                        "job 2 moved to place 1 of the queue, by bob",
+                        "job 2 removed from the queue: measures, gyro SIM-FOG-1, by bob",
+                        "hold the queue, by alice",
+                        HasSubstr("go on with the queue, which was held (asked for by alice")));
+  EXPECT_EQ(events[0].unix_s, 1000.0);
+  EXPECT_EQ(events[2].unix_s, 1001.0);
+  EXPECT_EQ(events[3].gyro_serial_number, "SIM-FOG-1");
+  EXPECT_EQ(nlohmann::json::parse(events[3].data_json).at("uid"), 1001);
+  EXPECT_TRUE(desk.take_bench_events().empty());
 }
 
 TEST_F(RunDeskTest, AnOrderForOneRunNeverFallsOnTheNext) {

@@ -257,6 +257,23 @@ TEST(RunEngine, AnOperatorWhoDeclinesAborts) {
   EXPECT_TRUE(rig.log.points.empty());
 }
 
+TEST(RunEngine, SaysAndAsksBeforeTheFirstStep) {
+  for (const bool agrees : {true, false}) {
+    Rig rig;
+    rig.plant.operator_agrees = agrees;
+    RunHeader header;
+    header.remarks = {"operating time counts from now"};
+    header.question = "Is it on the bench?";
+    const auto summary = rig.engine.run(rig.plan({average()}), header);
+    ASSERT_TRUE(summary);
+    EXPECT_EQ(summary->end.outcome, agrees ? RunOutcome::kCompleted : RunOutcome::kAborted);
+    EXPECT_EQ(summary->points, agrees ? 1U : 0U);
+    EXPECT_TRUE(rig.log.has_event("operating time counts from now"));
+    if (!agrees) EXPECT_THAT(summary->end.reason, HasSubstr("declined: Is it on the bench?"));
+    EXPECT_TRUE(rig.log.steps.empty() != agrees) << "no step before the answer";
+  }
+}
+
 /// Answers after twenty seconds.
 class SlowOperator final : public drivers::Operator {
  public:

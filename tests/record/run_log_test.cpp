@@ -254,6 +254,32 @@ TEST_F(RunLogTest, KeepsStepsWithTheirEvidenceAndEventsWithTheirData) {
   EXPECT_EQ(events->front().data_json, "{\"after_s\": 1}");
 }
 
+TEST_F(RunLogTest, KeepsWhatHappensOutsideOfRuns) {
+  EXPECT_TRUE(open()->bench_event("bench 2", {1e9 + 0.25, "warning", "refused", "", ""}));
+  auto log = open();
+  ASSERT_TRUE(log->begin_run(header(), {}));
+  EXPECT_TRUE(log->bench_event("bench 1", {1e9 + 1.0, "info", "queued", "SN-1", R"({"job":1})"}));
+  const auto events = reader()->bench_events();
+  ASSERT_TRUE(events) << events.error().message;
+  ASSERT_EQ(events->size(), 2U);
+  EXPECT_EQ((*events)[0].bench, "bench 2");
+  EXPECT_EQ((*events)[0].unix_s, 1e9 + 0.25);
+  EXPECT_EQ((*events)[0].severity, "warning");
+  EXPECT_EQ((*events)[1].message, "queued");
+  EXPECT_EQ((*events)[1].gyro_serial_number, "SN-1");
+  EXPECT_EQ((*events)[1].data_json, R"({"job":1})");
+  EXPECT_TRUE(reader()->events(1)->empty()) << "they are no run's";
+}
+
+TEST_F(RunLogTest, AnOlderLogHasNothingOutsideOfRuns) {
+  open();
+  auto database = Database::open(path_, Database::Mode::kWrite);
+  ASSERT_TRUE((*database)->execute("DROP TABLE bench_events"));
+  EXPECT_TRUE(reader()->bench_events()->empty());
+  EXPECT_TRUE(open()->bench_event("bench", {0.0, "info", "is added", "", ""}));
+  EXPECT_EQ(reader()->bench_events()->size(), 1U);
+}
+
 TEST_F(RunLogTest, MonitorRowsAreKeptToTheLast) {
   const auto log = open();
   ASSERT_TRUE(log->begin_run(header(), {}));
