@@ -160,6 +160,7 @@ int main(int argc, char** argv) {
       return 0;
     }
     records = run(tasks, options);
+    fmt::print(stderr, "{}", times_text(records));
   }
   std::string command = "diagnosis_study";
   for (int i = 1; i < argc; ++i) command += fmt::format(" {}", argv[i]);

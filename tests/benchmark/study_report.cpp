@@ -57,6 +57,11 @@ std::vector<Figure> figures() {
        [](const Record& r) { return r.part == "nulls" && of_the_family(r); }, alarm},
       {"false alarms, other noise", "<= 5 %",
        [](const Record& r) { return r.part == "nulls" && !of_the_family(r); }, alarm},
+      {"false alarms, records longer than ten hours", "<= 5 %",
+       [](const Record& r) {
+         return r.part == "nulls" && (r.design == "mixed" || r.design == "long");
+       },
+       alarm},
       {"false alarms, all noise, without \"a slow effect or random walk\"", "",
        [](const Record& r) { return r.part == "nulls"; },
        [](const Record&, Outcome o) { return !silent(o) && o != Outcome::kRightInSet; }},
@@ -131,11 +136,8 @@ std::string quantile_text(std::vector<double> values, double level) {
   return fmt::format("{:.2f}", *at);
 }
 
-std::string median_text(std::vector<double> values) {
-  return quantile_text(std::move(values), 0.5);
-}
+}  // namespace
 
-/// How long a verdict on a table of usual size takes.
 std::string times_text(const std::vector<Record>& records) {
   std::vector<double> seconds;
   for (const Record& r : records) {
@@ -143,10 +145,12 @@ std::string times_text(const std::vector<Record>& records) {
   }
   if (seconds.empty()) return "";
   return fmt::format(
-      ", and {} s on tables of 40 to 400 rows (nineteen of twenty in {} s, the "
-      "slowest {} s)",
-      median_text(seconds), quantile_text(seconds, 0.95), quantile_text(seconds, 1.0));
+      "A verdict on tables of 40 to 400 rows: {} s in the median, nineteen of twenty in {} s, the "
+      "slowest {} s.\n",
+      quantile_text(seconds, 0.5), quantile_text(seconds, 0.95), quantile_text(seconds, 1.0));
 }
+
+namespace {
 
 void put_header(std::string& out, const std::vector<std::string>& names) {
   out += fmt::format("| {} |\n|{}\n", fmt::join(names, " | "),
@@ -232,7 +236,7 @@ std::string confusion_table(const std::vector<Record>& records, const std::strin
     const auto nearest =
         std::max_element(count.nearest.begin(), count.nearest.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    out += fmt::format("| {} | {} | {} {} | {} |", truth, design, median_text(count.cosine),
+    out += fmt::format("| {} | {} | {} {} | {} |", truth, design, quantile_text(count.cosine, 0.5),
                        nearest->first, count.trials);
     for (const std::size_t n : count.of) out += n > 0 ? fmt::format(" {} |", n) : " |";
     out += fmt::format(" {} | {} |\n", rate_text(hits[key], count.trials), count.baselines_text());
@@ -290,13 +294,7 @@ std::string rate_text(std::size_t hits, std::size_t trials) {
 
 std::string study_page(const std::vector<Record>& records, const std::string& command) {
   std::string out(kPreamble);
-  std::vector<double> seconds;
-  for (const Record& r : records) seconds.push_back(r.seconds);
   out += fmt::format("    {}\n\n{} trials", command, records.size());
-  if (!seconds.empty()) {
-    out +=
-        fmt::format(", {} s a verdict in the median{}", median_text(seconds), times_text(records));
-  }
   const auto contradict = [](const Record& r) { return !r.contradiction.empty(); };
   out += fmt::format("; {} verdicts contradict themselves",
                      std::count_if(records.begin(), records.end(), contradict));
