@@ -8,6 +8,14 @@
 
 namespace fogbench::config {
 
+/// The unit that a person or another program wrote so: "°/s", "deg/hr", "мкТл"; null for none. A
+/// device file spells it as find_unit does.
+const StatedUnit* unit_spelt(std::string_view text);
+
+/// The name without its unit and without what joins them: "gyro" of "gyro [deg/s]" and of
+/// "gyro_deg_s".
+std::string_view name_without_unit(std::string_view name);
+
 /// Null where the name states none. Errors: kBadInput for brackets around what is no unit; a name
 /// that merely ends in letters states none.
 Result<const StatedUnit*> unit_in_name(std::string_view name);

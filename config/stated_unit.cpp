@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kZeroCelsiusInKelvin = 273.15;
+/// T m/A, CODATA 2018: a field strength is taken for the flux density that it has in vacuum.
+constexpr double kVacuumPermeability = 1.25663706212e-6;
 constexpr double kStandardGravity = 9.80665;  ///< m/s^2, exact by definition (CGPM 1901)
 
 /// The house's unit stands first of its kind.
@@ -25,6 +27,7 @@ constexpr StatedUnit kUnits[] = {
     {"urad/s", Dimension::kRate, 1e-6 * kDegPerRad* kSecondsPerHour},
     {"arcsec/s", Dimension::kRate, kSecondsPerHour / 3600.0},
     {"arcsec/h", Dimension::kRate, 1.0 / 3600.0},
+    {"rev/s", Dimension::kRate, 360.0 * kSecondsPerHour},
     {"rpm", Dimension::kRate, 360.0 * 60.0},
 
     {"degC", Dimension::kTemperature},
@@ -39,6 +42,8 @@ constexpr StatedUnit kUnits[] = {
     {"T", Dimension::kField, 1e6},
     {"G", Dimension::kField, 100.0},
     {"mG", Dimension::kField, 0.1},
+    {"A/m", Dimension::kField, 1e6 * kVacuumPermeability},
+    {"kA/m", Dimension::kField, 1e9 * kVacuumPermeability},
 
     {"A", Dimension::kCurrent},
     {"mA", Dimension::kCurrent, 1e-3},
@@ -64,8 +69,11 @@ constexpr StatedUnit kUnits[] = {
 
     {"s", Dimension::kTime},
     {"ms", Dimension::kTime, 1e-3},
+    {"us", Dimension::kTime, 1e-6},
+    {"ns", Dimension::kTime, 1e-9},
     {"min", Dimension::kTime, 60.0},
     {"h", Dimension::kTime, kSecondsPerHour},
+    {"d", Dimension::kTime, 24.0 * kSecondsPerHour},
 
     {"Hz", Dimension::kFrequency},
     {"kHz", Dimension::kFrequency, 1e3},
