@@ -186,7 +186,7 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
     if (!opened) return opened.error();
     page = std::move(*opened);
   }
-  auto table = load_table(options.data);
+  auto table = load_table(options.data, {&*model});
   if (!table) return table.error();
   const std::vector<std::string> notes = model::mend_stamps(*table, model->observable);
   const auto noise = chosen_noise(options.noise, options.data);
@@ -205,7 +205,9 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
     if (!written) return written.error();
   }
   if (options.json) {
-    print_json(to_json(*result, options, model->fit.has_value()));
+    nlohmann::json document = to_json(*result, options, model->fit.has_value());
+    document["read_as"] = table->provenance();
+    print_json(document);
   } else {
     print_text(*result, options, *model);
   }

@@ -27,7 +27,7 @@ Result<ExitStatus> run_compensate(const CompensateOptions& options) {
   if (!file) return file.error();
   const Result<config::ModelFile> model = config::load_model(*file);
   if (!model) return model.error();
-  Result<model::Table> table = load_table(options.data);
+  Result<model::Table> table = load_table(options.data, {&*model});
   if (!table) return table.error();
   Result<model::Compensation> result = model::compensate(*table, *model);
   if (!result) return result.error();
@@ -40,6 +40,7 @@ Result<ExitStatus> run_compensate(const CompensateOptions& options) {
                 {"deviation_before", result->deviation_before},
                 {"deviation_after", result->deviation_after},
                 {"column", result->column},
+                {"read_as", table->provenance()},
                 {"file", options.output}});
     return ExitStatus::kDone;
   }

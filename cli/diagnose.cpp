@@ -93,7 +93,8 @@ void clear_progress() {
 Result<std::string> extended_model(const model::Diagnosis& d, const DataOptions& data) {
   config::ModelFile extended = d.after.fitted;
   if (extended.fit) {
-    if (Status signed_ok = sign(*extended.fit, data); !signed_ok) return signed_ok.error();
+    if (Status signed_ok = sign(*extended.fit, data, d.table.provenance()); !signed_ok)
+      return signed_ok.error();
   }
   return config::to_json_text(extended);
 }
@@ -159,7 +160,7 @@ Status read_given(const DiagnoseOptions& options, Given& given) {
   DataOptions record = options.data;
   record.data = {options.quiet};
   record.segment.clear();
-  auto loaded = load_table(record, model::kMostRowsToRead);
+  auto loaded = load_table(record, {&given.model, model::kMostRowsToRead});
   if (!loaded) return loaded.error();
   given.quiet = std::move(*loaded);
   given.how.quiet = &*given.quiet;
@@ -177,9 +178,12 @@ struct OfEach {
 };
 
 Result<model::Diagnosis> diagnosed(const DiagnoseOptions& options, const Given& given) {
-  const auto table = load_table(options.data, model::kMostRowsToRead);
+  const auto table = load_table(options.data, {&given.model, model::kMostRowsToRead});
   if (!table) return table.error();
-  return model::diagnose(*table, given.model, given.how);
+  auto result = model::diagnose(*table, given.model, given.how);
+  if (!result) return result;
+  for (const std::string& line : table->provenance()) result->table.add_provenance(line);
+  return result;
 }
 
 void print_each(const OfEach& one, std::string_view unit) {

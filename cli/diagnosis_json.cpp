@@ -146,6 +146,7 @@ ordered_json diagnosis_json(const model::Diagnosis& d, const std::string& next_s
       {"ladder", ladder},
       {"sentences", model::verdict_in_words(d, next_step).sentences()},
       {"warnings", warnings},
+      {"read_as", d.table.provenance()},
       {"next", next_step}};
 }
 

@@ -119,7 +119,7 @@ Result<ExitStatus> run_fit(const FitCommandOptions& options) {
   if (!file) return file.error();
   const Result<config::ModelFile> model = config::load_model(*file);
   if (!model) return model.error();
-  Result<model::Table> table = load_table(options.data);
+  Result<model::Table> table = load_table(options.data, {&*model});
   if (!table) return table.error();
   const std::vector<std::string> notes = model::mend_stamps(*table, model->observable);
   const auto noise = chosen_noise(options.noise, options.data);
@@ -129,13 +129,14 @@ Result<ExitStatus> run_fit(const FitCommandOptions& options) {
                  {.noise = noise->kind, .weight_by = options.weight_by, .prior = noise->prior});
   if (!result) return with_notes(result.error(), notes);
   for (const std::string& note : notes) print_note(note);
-  if (Status signed_ok = sign(*result->fitted.fit, options.data); !signed_ok) {
+  if (Status signed_ok = sign(*result->fitted.fit, options.data, table->provenance()); !signed_ok) {
     return signed_ok.error();
   }
   const std::string text = config::to_json_text(result->fitted);
   if (Status written = config::write_file(options.output, text); !written) return written.error();
   if (options.json) {
     nlohmann::json document = to_json(*result);
+    document["read_as"] = table->provenance();
     document["file"] = options.output;
     print_json(document);
   } else {

@@ -21,8 +21,9 @@ Result<std::string> hash_of_data(const std::string& name, const DataOptions& dat
   const auto stored = run_in_store(name, data);
   if (!stored) {
     std::error_code ignored;  // a pipe cannot be read twice
-    if (!std::filesystem::is_regular_file(name, ignored)) return std::string();
-    return record::file_sha256(name);
+    const std::string file = file_of(name);
+    if (!std::filesystem::is_regular_file(file, ignored)) return std::string();
+    return record::file_sha256(file);
   }
   const auto path = store_to_read(stored->store);
   if (!path) return path.error();
@@ -33,7 +34,8 @@ Result<std::string> hash_of_data(const std::string& name, const DataOptions& dat
 
 }  // namespace
 
-Status sign(config::FitRecord& record, const DataOptions& data) {
+Status sign(config::FitRecord& record, const DataOptions& data,
+            const std::vector<std::string>& read_as) {
   for (const std::string& name : data.data) {
     record.data += (record.data.empty() ? "" : ", ") + name;
     const Result<std::string> hash = hash_of_data(name, data);
@@ -41,6 +43,7 @@ Status sign(config::FitRecord& record, const DataOptions& data) {
     if (hash->empty()) continue;
     record.data_sha256 += (record.data_sha256.empty() ? "" : ", ") + *hash;
   }
+  record.read_as = read_as;
   const auto now = std::chrono::floor<std::chrono::seconds>(drivers::SteadyClock().wall_now());
   record.fitted_at = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
   record.software_version = FOGBENCH_VERSION;

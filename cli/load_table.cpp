@@ -4,23 +4,28 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "acceptance/run_table.hpp"
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
-#include "config/column_unit.hpp"
-#include "config/units.hpp"
+#include "model/table/choose_columns.hpp"
+#include "model/table/doubts.hpp"
+#include "model/table/read_table.hpp"
 #include "record/export.hpp"
 #include "record/run_log_reader.hpp"
 
 namespace fogbench::cli {
 namespace {
 
-using Renames = std::map<std::string, std::string>;
+using Pairs = std::map<std::string, std::string>;
 
 std::optional<std::int64_t> run_number(std::string_view text) {
   std::int64_t run = 0;
@@ -29,9 +34,9 @@ std::optional<std::int64_t> run_number(std::string_view text) {
   return run;
 }
 
-Result<Renames> parse_pairs(const std::vector<std::string>& given, const char* option,
-                            const char* expected) {
-  Renames pairs;
+Result<Pairs> parse_pairs(const std::vector<std::string>& given, const char* option,
+                          const char* expected) {
+  Pairs pairs;
   for (const std::string& pair : given) {
     const std::size_t equals = pair.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == pair.size()) {
@@ -43,93 +48,67 @@ Result<Renames> parse_pairs(const std::vector<std::string>& given, const char* o
   return pairs;
 }
 
-/// The unit that the column was measured in, by what was said of it or else by its name; null: it
-/// is not known.
-Result<const config::StatedUnit*> unit_of_source(const std::string& column, const Renames& units) {
-  const auto said = units.find(column);
-  if (said == units.end()) return config::unit_in_name(column);
-  if (const config::StatedUnit* const unit = config::find_unit(said->second)) return unit;
-  return Error{ErrorCode::kUsage,
-               fmt::format("--unit {}: found the unit \"{}\", expected one of {}", column,
-                           said->second, config::known_units())};
+/// The names that a model's terms ask for.
+std::set<std::string> names_in(const config::ModelFile& model) {
+  std::set<std::string> names{model.observable};
+  const auto is_letter = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  };
+  for (const config::ModelTerm& term : model.terms) {
+    std::string name;
+    for (const char c : term.effect + " " + term.expression.value_or("") + " ") {
+      if (is_letter(c)) {
+        name += c;
+      } else if (!name.empty()) {
+        names.insert(std::exchange(name, {}));
+      }
+    }
+  }
+  return names;
 }
 
-/// A column that was taken from one of another unit gets the house's numbers; said on stderr.
-Status take_to_house_unit(const std::string& wanted, const std::string& from, const Renames& units,
-                          model::Table& table) {
-  const auto unit = unit_of_source(from, units);
-  if (!unit) return unit.error();
-  const config::StatedUnit* const target = config::find_unit(config::unit_of(wanted));
-  if (*unit == nullptr || target == nullptr) return {};
-  const config::StatedUnit& source = **unit;
-  if (source.dimension != target->dimension) {
-    // The end of a name may mean something else; what was said or stands in brackets does not.
-    const bool stated = units.contains(from) || from.ends_with(']') || from.ends_with(')');
-    if (!stated) return {};
-    return Error{ErrorCode::kBadInput, fmt::format("column {}: is in {}, expected {} for {}", from,
-                                                   source.name, target->name, wanted)};
+/// Columns of a run under another name or from another unit.
+Status rename_in_run(std::int64_t run, const model::ReadOptions& read, model::Table& table) {
+  std::vector<model::SourceColumn> source;
+  for (const std::string& name : table.column_names()) source.push_back({name, {}});
+  const auto choice = model::choose_columns(source, read);
+  if (!choice) {
+    return Error{choice.error().code, fmt::format("run {}: {}", run, choice.error().message)};
   }
-  if (source.factor == target->factor && source.offset == target->offset) return {};
-  const auto stated = table.column(wanted);
-  std::vector<double> values(stated.begin(), stated.end());
-  for (double& value : values) {
-    value = (value * source.factor + source.offset - target->offset) / target->factor;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    const model::ChosenColumn& chosen = choice->columns[i];
+    const bool changes = chosen.is_foreign || read.units.contains(source[i].name);
+    if (chosen.name.empty() || !changes) continue;
+    const auto values = table.column(source[i].name);
+    std::vector<double> converted(values.begin(), values.end());
+    model::convert(chosen, converted);
+    table.set_column(chosen.name, std::move(converted));
   }
-  table.set_column(wanted, std::move(values));
-  print_note(fmt::format("{}: taken from {} in {} to {}", wanted, from, source.name, target->name));
+  for (const std::string& line : choice->says) table.add_provenance(line);
   return {};
 }
 
-Result<model::Table> load_run(const std::string& store, std::int64_t run, const Renames& renames,
-                              bool unfinished) {
-  const auto path = store_to_read(store);
+Result<model::Table> load_run(const RunInStore& stored, const DataOptions& options,
+                              const model::ReadOptions& read) {
+  const auto path = store_to_read(stored.store);
   if (!path) return path.error();
   auto reader = record::RunLogReader::open(*path);
   if (!reader) return reader.error();
-  const auto points = record::valid_points(**reader, run, unfinished);
+  const auto points = record::valid_points(**reader, stored.run, options.unfinished);
   if (!points) return points.error();
-  const auto info = (*reader)->run(run);
+  const auto info = (*reader)->run(stored.run);
   if (!info) return info.error();
   if (!info->completed()) {
-    print_note(fmt::format("run {} was not completed ({})", run, info->outcome()));
+    print_note(fmt::format("run {} was not completed ({})", stored.run, info->outcome()));
   }
   model::Table table = acceptance::to_table(*points);
-  for (const auto& [wanted, name] : renames) {
-    if (!table.has(name)) {
-      return Error{ErrorCode::kBadInput, fmt::format("run {}: no column {}", run, name)};
-    }
-    const auto values = table.column(name);
-    table.set_column(wanted, {values.begin(), values.end()});
-  }
+  if (Status renamed = rename_in_run(stored.run, read, table); !renamed) return renamed.error();
   return table;
 }
 
-/// "7", "STORE.db#7" or a CSV file.
-Result<model::Table> load_one(const std::string& data, const DataOptions& options,
-                              const Renames& renames, const Renames& units, std::size_t most_rows) {
-  const auto stored = run_in_store(data, options);
-  auto table = stored ? load_run(stored->store, stored->run, renames, options.unfinished)
-                      : model::read_csv(data, renames, most_rows);
-  if (!table) return table;
-  if (!table->written().empty()) print_note(data + ": read as " + table->written());
-  for (const auto& [wanted, from] : renames) {
-    const Status converted = take_to_house_unit(wanted, from, units, *table);
-    if (!converted) return converted.error();
-  }
-  for (const auto& said : units) {
-    const std::string& column = said.first;
-    const bool is_renamed = std::any_of(renames.begin(), renames.end(), [&](const auto& rename) {
-      return rename.second == column;
-    });
-    if (is_renamed) continue;
-    if (!table->has(column)) {
-      return Error{ErrorCode::kBadInput,
-                   fmt::format("--unit {}: {} has no such column", column, data)};
-    }
-    const Status converted = take_to_house_unit(column, column, units, *table);
-    if (!converted) return converted.error();
-  }
-  return table;
+Result<model::Table> load_file(const std::string& data, const model::ReadOptions& read) {
+  const std::string file = file_of(data);
+  return model::read_table(file, read, file == data ? "" : data.substr(file.size() + 1));
 }
 
 void name_runs_after(const std::string& data, model::Table& table) {
@@ -149,11 +128,22 @@ std::optional<RunInStore> run_in_store(const std::string& data, const DataOption
   return RunInStore{data.substr(0, hash), *run};
 }
 
+std::string file_of(const std::string& data) {
+  const std::size_t hash = data.rfind('#');
+  std::error_code ignored;
+  // A file may also have such a name.
+  const bool whole =
+      hash == std::string::npos || hash == 0 || std::filesystem::exists(data, ignored);
+  return whole ? data : data.substr(0, hash);
+}
+
 void add_data_options(CLI::App& command, DataOptions& options, DataCount count) {
   CLI::Option* data =
       command
           .add_option("DATA", options.data,
-                      "Measurements: the number of a run, STORE.db#NUMBER, or a CSV file")
+                      "Measurements: the number of a run, STORE.db#NUMBER, or a file with a table: "
+                      "text of any dialect (.gz, .zst too), MATLAB, HDF5; FILE#NAME for one of "
+                      "several in it")
           ->required();
   if (count == DataCount::kOne) data->expected(1);
   command
@@ -199,15 +189,31 @@ std::string command_with_adequate(const DataOptions& options, const std::string&
                      use ? "compensated.csv" : "fitted.json");
 }
 
-Result<model::Table> load_table(const DataOptions& options, std::size_t most_rows) {
-  const auto renames =
+Result<model::Table> load_one(const std::string& data, const DataOptions& options,
+                              const LoadHow& how) {
+  auto columns =
       parse_pairs(options.columns, "--column", "wanted=name, such as rate_deg_per_h=omega,");
-  if (!renames) return renames.error();
-  const auto units = parse_pairs(options.units, "--unit", "name=unit, such as gyro=deg/s,");
+  if (!columns) return columns.error();
+  auto units = parse_pairs(options.units, "--unit", "name=unit, such as gyro=deg/s,");
   if (!units) return units.error();
+  const model::ReadOptions read{std::move(*columns), std::move(*units),
+                                how.model ? names_in(*how.model) : std::set<std::string>(),
+                                how.need_all, how.most_rows};
+  const auto stored = run_in_store(data, options);
+  auto table = stored ? load_run(*stored, options, read) : load_file(data, read);
+  if (!table) return table;
+  for (const std::string& line : table->provenance()) print_note(data + ": read as " + line);
+  for (const std::string& doubt : model::doubts(*table)) {
+    print_note(fmt::format("{}: warning: {}", data, doubt));
+    table->add_provenance("warning: " + doubt);
+  }
+  return table;
+}
+
+Result<model::Table> load_table(const DataOptions& options, const LoadHow& how) {
   std::optional<model::Table> all;
   for (const std::string& data : options.data) {
-    auto table = load_one(data, options, *renames, *units, most_rows);
+    auto table = load_one(data, options, how);
     if (!table) return table.error();
     if (options.data.size() > 1) name_runs_after(data, *table);
     if (all) {

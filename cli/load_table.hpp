@@ -1,5 +1,6 @@
 #pragma once
-// The DATA argument that the model's commands share: a run of the store, or a CSV file.
+// The DATA argument that the model's commands share: a run of the store, or a file that holds a
+// table.
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
@@ -7,13 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "config/model_file.hpp"
 #include "config/result.hpp"
-#include "model/table/read_csv.hpp"
+#include "model/table/read_options.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::cli {
 
 struct DataOptions {
-  std::vector<std::string> data;     ///< each "7", "STORE.db#7" or "file.csv"
+  std::vector<std::string> data;     ///< each "7", "STORE.db#7", "file.csv" or "file.mat#log"
   std::vector<std::string> columns;  ///< "wanted=name"
   std::vector<std::string> units;    ///< "name=unit", of columns whose names do not say it
   std::string segment;               ///< glob; empty: every row
@@ -32,8 +35,11 @@ struct RunInStore {
   std::int64_t run = 0;
 };
 
-/// Empty for a CSV file.
+/// Empty for a file that holds a table.
 std::optional<RunInStore> run_in_store(const std::string& data, const DataOptions& options);
+
+/// The file of "FILE" or "FILE#NAME", a table inside it.
+std::string file_of(const std::string& data);
 
 /// For headings: "run 7", "STORE.db#7, file.csv".
 std::string data_name(const DataOptions& options);
@@ -45,11 +51,22 @@ std::string data_arguments(const DataOptions& options);
 std::string command_with_adequate(const DataOptions& options, const std::string& model,
                                   bool fitted);
 
+/// What a caller knows of the tables that it wants.
+struct LoadHow {
+  /// The model that they are for: a column that it names is not taken for another one.
+  const config::ModelFile* model = nullptr;
+  std::size_t most_rows = model::kEveryRow;  ///< model/table/read_options.hpp
+  bool need_all = true;                      ///< the same
+};
+
+/// One file or run. What was recognised in it, and what is doubtful, is said on stderr and stands
+/// in its provenance.
+Result<model::Table> load_one(const std::string& data, const DataOptions& options,
+                              const LoadHow& how = {});
+
 /// The tables one after the other. With several, the run of each row is "DATA/run", so that test 1
 /// of two records stays two runs.
-/// Of a longer CSV file neighbouring rows are averaged (model/table/read_csv.hpp).
-/// Errors: kBadInput (no such file or run, not CSV, no row matches the segment), kStore.
-Result<model::Table> load_table(const DataOptions& options,
-                                std::size_t most_rows = model::kEveryRow);
+/// Errors: kBadInput (no such file or run, no table, no row matches the segment), kStore.
+Result<model::Table> load_table(const DataOptions& options, const LoadHow& how = {});
 
 }  // namespace fogbench::cli

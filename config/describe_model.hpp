@@ -44,6 +44,7 @@ template <class Visitor>
 void describe(Visitor& v, FitRecord& f) {
   v.optional("data", f.data, "File or run that was fitted.");
   v.optional("data_sha256", f.data_sha256, "Its hash.");
+  v.optional("read_as", f.read_as, "What was recognised in the files: dialect, names, units.");
   v.optional("fitted_at", f.fitted_at, "ISO 8601, UTC.");
   v.optional("software_version", f.software_version, "Of fogbench.");
   v.optional("parameter_names", f.parameter_names, "Rows and columns of the covariance.");

@@ -33,7 +33,8 @@ struct ModelTerm {
 struct FitRecord {
   std::string data;  ///< file or run that was fitted
   std::string data_sha256;
-  std::string fitted_at;  ///< ISO 8601, UTC
+  std::vector<std::string> read_as;  ///< what was recognised in it: units, names, dialect
+  std::string fitted_at;             ///< ISO 8601, UTC
   std::string software_version;
   std::vector<std::string> parameter_names;  ///< rows and columns of the covariance
   std::vector<std::vector<double>> covariance;

@@ -82,10 +82,9 @@ std::string footer(const Diagnosis& d, const config::ModelFile& model,
   if (d.rows_per_bin > 1) {
     out += fmt::format(", each the mean of up to {} rows of the data", d.rows_per_bin);
   }
-  return out + fmt::format(
-                   " &middot; false alarms: {:.3g} % of models that miss nothing.</p>"
-                   "</footer>\n",
-                   100.0 * d.false_alarm_rate);
+  out += fmt::format(" &middot; false alarms: {:.3g} % of models that miss nothing.</p>\n",
+                     100.0 * d.false_alarm_rate);
+  return out + provenance_text(d.table) + "</footer>\n";
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ std::string report_html(const Comparison& c, const Table& table, const config::M
       "&middot; {}</p>\n",
       escaped(model.name), escaped(data_name), c.fit.rows.size(),
       c.as_is ? "coefficients held as given" : "coefficients fitted");
+  out += provenance_text(table);
   out += fmt::format("<div class=\"verdict{}\">\n", fails ? " fails" : "");
   for (const std::string& sentence : c.sentences) {
     out += fmt::format("<p{}>{}</p>\n", &sentence == &c.sentences.front() ? " class=\"lead\"" : "",

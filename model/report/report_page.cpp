@@ -44,6 +44,14 @@ std::string page_end(const std::string& rows_json) {
       rows_json, kReportScript);
 }
 
+std::string provenance_text(const Table& table) {
+  std::string out;
+  for (const std::string& line : table.provenance()) {
+    out += fmt::format("<p class=\"sub\">Data read as {}</p>\n", escaped(line));
+  }
+  return out;
+}
+
 std::string heading_of(const std::string& variable) {
   if (variable == "time_s") return "time, h";
   std::string words = variable;

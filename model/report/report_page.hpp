@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "model/fit/fit.hpp"
+#include "model/table/table.hpp"
 
 namespace fogbench::model {
 
@@ -22,6 +23,9 @@ std::string page_start(const std::string& title, std::string_view language = "en
 /// The rest, with `rows_json` for the script: what a pointed-at row shows (report_plots.hpp).
 /// Without it the page has no script.
 std::string page_end(const std::string& rows_json = {});
+
+/// What was recognised in the data's files; nothing where they have the plain form.
+std::string provenance_text(const Table& table);
 
 /// "temperature, degC" of "temperature_c"; time is printed in hours.
 std::string heading_of(const std::string& variable);

@@ -1,32 +1,26 @@
 #include "model/table/line_reader.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
+#include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace fogbench::model {
 namespace {
 
-/// Several lines of the greatest length.
-constexpr std::size_t kBuffer = 4 * LineReader::kMaximumLine;
+/// One line of the greatest length, and some room behind it.
+constexpr std::size_t kBuffer = 2 * LineReader::kMaximumLine;
+/// So much is asked for at once: what stays in the cache until it has been read.
+constexpr std::size_t kAtOnce = std::size_t{1} << 18;
 
 }  // namespace
 
-OpenFile::OpenFile(const std::filesystem::path& file)
-    : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
+LineReader::LineReader(std::unique_ptr<ByteSource> text)
+    : text_(std::move(text)), buffer_(kBuffer) {}
 
-OpenFile::~OpenFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-LineReader::LineReader(int file) : file_(file), buffer_(kBuffer) {}
-
-LineReader::Outcome LineReader::next(std::string_view& line) {
+Result<LineReader::Outcome> LineReader::next(std::string_view& line) {
   const char* newline = find_newline();
   while (newline == nullptr && end_ - begin_ <= kMaximumLine && !finished_) {
-    if (!refill()) return Outcome::kFailed;
+    if (Status refilled = refill(); !refilled) return refilled.error();
     newline = find_newline();
   }
   std::size_t length = 0;
@@ -47,22 +41,27 @@ LineReader::Outcome LineReader::next(std::string_view& line) {
   return Outcome::kLine;
 }
 
+Result<std::string_view> LineReader::peek(std::size_t most) {
+  while (end_ - begin_ < most && !finished_) {
+    if (Status refilled = refill(); !refilled) return refilled.error();
+  }
+  return std::string_view(buffer_.data() + begin_, std::min(most, end_ - begin_));
+}
+
 const char* LineReader::find_newline() const {
   return static_cast<const char*>(std::memchr(buffer_.data() + begin_, '\n', end_ - begin_));
 }
 
-bool LineReader::refill() {
+Status LineReader::refill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  ssize_t got = 0;
-  do {
-    got = ::read(file_, buffer_.data() + end_, buffer_.size() - end_);
-  } while (got < 0 && errno == EINTR);
-  if (got < 0) return false;
-  finished_ = got == 0;
-  end_ += static_cast<std::size_t>(got);
-  return true;
+  const std::size_t room = std::min(kAtOnce, kBuffer - end_);
+  const auto got = text_->read(std::span(buffer_).subspan(end_, room));
+  if (!got) return got.error();
+  finished_ = *got == 0;
+  end_ += *got;
+  return {};
 }
 
 }  // namespace fogbench::model

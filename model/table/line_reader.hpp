@@ -1,24 +1,13 @@
 #pragma once
-// Lines of a file through one fixed buffer, so that no file, however wrong, takes much memory.
+// Lines of a text through one fixed buffer, so that no file, however wrong, takes much memory.
 
-#include <filesystem>
+#include <memory>
 #include <string_view>
 #include <vector>
 
+#include "model/table/byte_source.hpp"
+
 namespace fogbench::model {
-
-/// A file open for reading; the descriptor is -1 (and errno says why) when it cannot be opened.
-class OpenFile {
- public:
-  explicit OpenFile(const std::filesystem::path& file);
-  ~OpenFile();
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  int descriptor() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
 
 class LineReader {
  public:
@@ -28,20 +17,23 @@ class LineReader {
     kLine,
     kEnd,
     kTooLong,  ///< more than kMaximumLine bytes
-    kFailed,   ///< errno says why
   };
 
-  explicit LineReader(int file);
-  /// The next line without its end (LF or CRLF), valid until the next call.
-  Outcome next(std::string_view& line);
+  explicit LineReader(std::unique_ptr<ByteSource> text);
+  /// The next line without its end (LF or CRLF), valid until the next call. Errors: the source's.
+  Result<Outcome> next(std::string_view& line);
+  /// What comes next, `most` bytes or all that is left; valid until the next call of anything.
+  Result<std::string_view> peek(std::size_t most);
   /// Bytes of the lines given out so far.
   std::size_t consumed() const { return consumed_; }
+  /// The source has given all its bytes.
+  bool finished() const { return finished_; }
 
  private:
   const char* find_newline() const;
-  bool refill();
+  Status refill();
 
-  int file_;
+  std::unique_ptr<ByteSource> text_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0, consumed_ = 0;
   bool finished_ = false;

@@ -88,6 +88,7 @@ Table Table::select(const std::vector<bool>& keep) const {
   assert(keep.size() == rows_);
   Table result;
   result.dropped_ = dropped_;
+  result.provenance_ = provenance_;
   result.run_ = selected(run_, keep);
   result.segment_ = selected(segment_, keep);
   result.rows_ = result.run_.index.size();
@@ -120,6 +121,7 @@ void Table::append(const Table& other) {
       values.insert(values.end(), found->second.begin(), found->second.end());
     }
   }
+  provenance_.insert(provenance_.end(), other.provenance_.begin(), other.provenance_.end());
   for (const auto& [name, because] : other.dropped_) dropped_.try_emplace(name, because);
 }
 

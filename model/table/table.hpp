@@ -41,10 +41,11 @@ class Table {
   void set_column(std::string name, std::vector<double> values);
   void set_run(TextColumn run);
   void set_segment(TextColumn segment);
+  /// What was recognised in the files that the table is from, a line each; none for a file that
+  /// has the plain form, the house's names and units.
+  const std::vector<std::string>& provenance() const { return provenance_; }
+  void add_provenance(std::string line) { provenance_.push_back(std::move(line)); }
   /// Remembers why a column of the source is not in the table.
-  /// How the file writes its table, where that is not the plain way; empty: it is.
-  const std::string& written() const { return written_; }
-  void set_written(std::string how) { written_ = std::move(how); }
   void set_dropped(std::string name, std::string because);
 
   /// How many rows of its source a row stands for at most; 1 unless it was read with a limit.
@@ -61,7 +62,7 @@ class Table {
 
   std::size_t rows_ = 0, rows_averaged_ = 1;
   std::map<std::string, std::vector<double>, std::less<>> columns_;
-  std::string written_;
+  std::vector<std::string> provenance_;
   std::map<std::string, std::string, std::less<>> dropped_;
   TextColumn run_, segment_;
 };

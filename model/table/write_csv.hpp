@@ -1,5 +1,5 @@
 #pragma once
-// Writes a measurement table as read_csv reads it.
+// Writes a measurement table as read_table reads it.
 
 #include <filesystem>
 

@@ -2,17 +2,21 @@
 // reading it.
 
 #include <benchmark/benchmark.h>
+#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "model/fit/fit.hpp"
-#include "model/table/read_csv.hpp"
+#include "model/table/read_table.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -64,19 +68,57 @@ config::ModelFile model() {
   return file;
 }
 
-void read_table(benchmark::State& state) {
+void read_whole_table(benchmark::State& state) {
   for (auto _ : state) {
-    auto table = read_csv(long_table().path());
+    auto table = read_table(long_table().path());
     if (!table) state.SkipWithError(table.error().message.c_str());
     benchmark::DoNotOptimize(table);
   }
   state.SetItemsProcessed(state.iterations() * kRows);
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(long_table().bytes()));
 }
-BENCHMARK(read_table)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_whole_table)->Unit(benchmark::kMillisecond);
+
+/// What the disk, or the memory that keeps its pages, gives at most.
+void read_bytes(benchmark::State& state) {
+  std::vector<char> buffer(std::size_t{1} << 18);
+  for (auto _ : state) {
+    std::ifstream in(long_table().path(), std::ios::binary);
+    while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()))) {
+      benchmark::DoNotOptimize(buffer.data());
+    }
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(long_table().bytes()));
+}
+BENCHMARK(read_bytes)->Unit(benchmark::kMillisecond);
+
+/// The numbers alone, nothing looked for and nothing kept: what a reader of text can reach.
+template <class Read>
+void read_numbers(benchmark::State& state, Read read) {
+  std::ifstream in(long_table().path(), std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const char* const first = text.data() + text.find('\n') + 1;
+  const char* const end = text.data() + text.size();
+  for (auto _ : state) {
+    double sum = 0.0;
+    for (const char* at = first; at < end; ++at) {
+      double value = 0.0;
+      at = read(at, end, value);
+      sum += value;
+    }
+    benchmark::DoNotOptimize(sum);
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(end - first));
+}
+BENCHMARK_CAPTURE(read_numbers, std_from_chars, [](const char* at, const char* end, double& value) {
+  return std::from_chars(at, end, value).ptr;
+})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_numbers, fast_float, [](const char* at, const char* end, double& value) {
+  return fast_float::from_chars(at, end, value).ptr;
+})->Unit(benchmark::kMillisecond);
 
 void fit_table(benchmark::State& state, FitOptions::Noise noise) {
-  const auto table = read_csv(long_table().path());
+  const auto table = read_table(long_table().path());
   if (!table) {
     state.SkipWithError(table.error().message.c_str());
     return;

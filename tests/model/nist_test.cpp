@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/fit/fit.hpp"
-#include "model/table/read_csv.hpp"
+#include "model/table/read_table.hpp"
 #include "tests/support/source_tree.hpp"
 
 namespace fogbench::model {
@@ -29,7 +29,7 @@ json problems(const std::string& file) {
 Table problem_table(const json& problem) {
   std::string name = problem.at("name");
   std::transform(name.begin(), name.end(), name.begin(), [](char c) { return std::tolower(c); });
-  auto table = read_csv(kFolder + name + ".csv");
+  auto table = read_table(kFolder + name + ".csv");
   EXPECT_TRUE(table) << (table ? "" : table.error().message);
   return table ? *table : Table{};
 }
