@@ -42,6 +42,8 @@ void add_runs(CLI::App& app, Action& action);
 void add_show(CLI::App& app, Action& action);
 void add_history(CLI::App& app, Action& action);
 void add_export(CLI::App& app, Action& action);
+void add_inspect(CLI::App& app, Action& action);
+void add_import(CLI::App& app, Action& action);
 void add_effects(CLI::App& app, Action& action);
 void add_fit(CLI::App& app, Action& action);
 void add_add(CLI::App& app, Action& action);

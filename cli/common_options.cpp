@@ -6,11 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <system_error>
 
 #include "cli/control_client.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
+#include "config/column_unit.hpp"
 #include "drivers/clock.hpp"
 #include "record/store.hpp"
 
@@ -25,6 +27,15 @@ std::optional<double> parse_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return {};
   return value;
+}
+
+bool is_span_option(std::string_view option) {
+  return option == "--average" || option == "--tolerance";
+}
+
+bool is_unit_of_time(std::string_view text) {
+  const config::StatedUnit* const unit = config::unit_spelt(text);
+  return unit != nullptr && unit->dimension == config::Dimension::kTime;
 }
 
 Result<std::filesystem::path> unnamed_store() {
@@ -98,6 +109,11 @@ std::vector<std::string> arguments_with_lists(int argc, char** argv) {
   bool value = false;  // of --set
   for (int i = 1; i < argc; ++i) {
     const std::string_view text = argv[i];
+    if (joined.size() > 1 && is_span_option(*std::prev(joined.end(), 2)) &&
+        parse_number(joined.back()) && is_unit_of_time(text)) {
+      joined.back() += fmt::format(" {}", text);
+      continue;
+    }
     const bool unfinished = value && (joined.back().ends_with(',') || joined.back().ends_with('='));
     if (unfinished || (value && text.starts_with(','))) {
       joined.back() += text;

@@ -38,7 +38,7 @@ struct ProcedureOptions {
 void add_procedure_options(CLI::App& command, ProcedureOptions& options);
 
 /// The program's arguments; a list that blanks after --set have taken apart, as in
-/// --set levels=0, 50, 100, is one again.
+/// --set levels=0, 50, 100, is one again, and so is a length of time, as in --average 60 s.
 std::vector<std::string> arguments_with_lists(int argc, char** argv);
 
 /// "name=1.5" or "name=31,35,40", blanks around numbers allowed. kUsage for anything else.

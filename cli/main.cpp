@@ -54,6 +54,8 @@ void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_show(app, action);
   fogbench::cli::add_history(app, action);
   fogbench::cli::add_export(app, action);
+  fogbench::cli::add_inspect(app, action);
+  fogbench::cli::add_import(app, action);
   fogbench::cli::add_effects(app, action);
   fogbench::cli::add_fit(app, action);
   fogbench::cli::add_add(app, action);

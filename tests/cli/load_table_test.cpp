@@ -87,7 +87,7 @@ TEST_F(LoadTableTest, RefusesAUnitOfAnotherKindAndOneThatNobodyKnows) {
   const std::string csv =
       folder_.file("units.csv", "gyro [K],odd [furlong],gyro_a\n1,2,3\n").string();
   expect_refused({.data = {csv}, .columns = {"rate_deg_per_h=gyro [K]"}}, ErrorCode::kBadInput,
-                 "column gyro [K]: is in K, expected deg/h for rate_deg_per_h");
+                 "column gyro [K]: is in K, expected a rotation rate in deg/h");
   expect_refused({.data = {csv}, .columns = {"rate_deg_per_h=odd [furlong]"}}, ErrorCode::kBadInput,
                  "found the unit \"furlong\", expected one of");
   expect_refused({.data = {csv}, .units = {"gyro_a=parsec"}}, ErrorCode::kUsage,
@@ -106,7 +106,7 @@ TEST_F(LoadTableTest, RenamesColumnsOfCsvAndOfRuns) {
       load_table({.data = {"1"}, .columns = {"temperature_c=target_c"}, .store = store_});
   ASSERT_TRUE(run);
   expect_refused({.data = {"1"}, .columns = {"temperature_c=wings"}, .store = store_},
-                 ErrorCode::kBadInput, "no column wings");
+                 ErrorCode::kBadInput, "column wings: not found");
   expect_refused({.data = {"1"}, .columns = {"omega"}, .store = store_}, ErrorCode::kUsage,
                  "wanted=name");
 }
