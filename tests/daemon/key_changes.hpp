@@ -49,9 +49,7 @@ inline std::vector<nlohmann::json> changes_of(const std::string& pointer,
     return {"tcp:127.0.0.1:1", "tty:/dev/none", "usb:0x0001:0x0002:X", "hid:0x1209:0x0001:X"};
   }
   if (ends("device")) {
-    return {"../devices/thermostat-omron.json", "../devices/gyro-crc8.json",
-            "../devices/turntable-scpi.json", "../devices/coil-kepco.json",
-            "../devices/magnetometer-hid.json"};
+    return {"thermostat-omron", "gyro-crc8", "turntable-scpi", "coil-kepco", "magnetometer-hid"};
   }
   if (ends("calibrated_on") || ends("calibration_due")) return {"2025-01-15"};
   if (ends("unit"))
