@@ -40,7 +40,7 @@ void print_heading(const procedures::Plan& plan, const DryRunOptions& options,
                    const std::string& bench, std::uint64_t seed) {
   fmt::print("{}, dry run on bench {}: {} steps, about {} of bench time\n", plan.procedure, bench,
              plan.steps.size(), procedures::duration_text(plan.estimate));
-  for (const std::string& sentence : plan.limits_met) fmt::print("  {}\n", sentence);
+  for (const std::string& sentence : plan.limits_met) fmt::print("{}", wrapped(sentence, "  "));
   fmt::print("scenario {}, seed {}\n\n", options.scenario, seed);
   fmt::print("{:>5}  {:>10}  {:<24}{:>9}{:>9}{:>11}  {:<10}\n", "point", "time, s", "segment",
              "T, degC", "H, uT", "deg/h", "+-");
@@ -62,9 +62,10 @@ const char* model_for(const procedures::Plan& plan) {
     return std::any_of(plan.steps.begin(), plan.steps.end(),
                        [is](const auto& step) { return is(step.action); });
   };
-  using procedures::SettleTemperature, procedures::SweepLevel;
-  const bool heated =
-      has([](const auto& a) { return std::holds_alternative<SettleTemperature>(a); });
+  using procedures::Ramp, procedures::SettleTemperature, procedures::SweepLevel;
+  const bool heated = has([](const auto& a) {
+    return std::holds_alternative<SettleTemperature>(a) || std::holds_alternative<Ramp>(a);
+  });
   const bool swept = has([](const auto& a) { return std::holds_alternative<SweepLevel>(a); });
   if (heated && swept) return "general";
   return swept ? "magnetic" : "thermal";

@@ -20,7 +20,28 @@ void TextTable::add_row(std::vector<std::string> cells) {
   rows_.push_back(std::move(cells));
 }
 
-std::string TextTable::text() const {
+std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
+  std::vector<std::string> lines(1);
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t blank = std::min(text.find(' ', at), text.size());
+    const std::size_t length = blank - at;
+    if (!lines.back().empty() && lines.back().size() + 1 + length > width) lines.emplace_back();
+    if (!lines.back().empty()) lines.back() += ' ';
+    lines.back().append(text, at, length);
+    at = blank + 1;
+  }
+  return lines;
+}
+
+std::string wrapped(const std::string& text, const std::string& indent) {
+  std::string out;
+  for (const std::string& line : wrapped(text, kTextWidth - indent.size() - 2)) {
+    out += fmt::format("{}{}{}\n", indent, out.empty() ? "" : "  ", line);
+  }
+  return out;
+}
+
+std::string TextTable::text(std::size_t width) const {
   std::vector<std::string> titles, units;
   for (const Column& column : columns_) {
     titles.push_back(column.title);
@@ -35,6 +56,14 @@ std::string TextTable::text() const {
   widen(titles);
   widen(units);
   for (const auto& row : rows_) widen(row);
+  std::size_t total = columns_.empty() ? 0 : 2 * (columns_.size() - 1);
+  for (const std::size_t w : widths) total += w;
+  if (width > 0 && total > width && !columns_.empty()) {
+    constexpr std::size_t kLeast = 20;
+    const std::size_t others = total - widths.back();
+    widths.back() = std::max(kLeast, width - std::min(width, others));
+    total = others + widths.back();
+  }
 
   std::string out;
   const auto write = [&](const std::vector<std::string>& cells) {
@@ -49,10 +78,19 @@ std::string TextTable::text() const {
   };
   write(titles);
   if (any_unit) write(units);
-  std::size_t total = columns_.empty() ? 0 : 2 * (columns_.size() - 1);
-  for (const std::size_t width : widths) total += width;
   out += std::string(total, '-') + '\n';
-  for (const auto& row : rows_) write(row);
+  for (const auto& row : rows_) {
+    if (width == 0 || row.empty() || row.back().size() <= widths.back()) {
+      write(row);
+      continue;
+    }
+    auto cells = row;
+    for (const std::string& line : wrapped(row.back(), widths.back())) {
+      cells.back() = line;
+      write(cells);
+      std::fill(cells.begin(), cells.end(), "");
+    }
+  }
   return out;
 }
 

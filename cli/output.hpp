@@ -24,13 +24,23 @@ class TextTable {
   /// Precondition: one cell per column.
   void add_row(std::vector<std::string> cells);
   bool empty() const { return rows_.empty(); }
-  /// Heading, units (when any column has one), a rule and the rows, each line ended.
-  std::string text() const;
+  /// Heading, units (when any column has one), a rule and the rows, each line ended. With a width,
+  /// the last column's cells are broken at blanks so that no line is longer, where that is
+  /// possible.
+  std::string text(std::size_t width = 0) const;
 
  private:
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
+
+/// How wide a text may be, so that it stands on paper and in most windows.
+inline constexpr std::size_t kTextWidth = 100;
+/// Lines of at most `width`, broken at blanks; a longer word stands alone.
+std::vector<std::string> wrapped(const std::string& text, std::size_t width);
+
+/// Ended lines of at most kTextWidth, each with the indent; further ones stand two farther right.
+std::string wrapped(const std::string& text, const std::string& indent);
 
 /// `value` with that many decimals; "-" for NaN (missing).
 std::string fixed(double value, int decimals);

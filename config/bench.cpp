@@ -263,9 +263,24 @@ bool check(const Place& at, const BenchConfig& b) {
   return !interlocks.present() || check_interlocks(interlocks, b);
 }
 
+ThermalReach reach_of(const ThermalPlant& plant) {
+  const double j_per_k = plant.heater_j_per_k + plant.carrier_j_per_k + plant.coil_j_per_k;
+  const auto rate = [j_per_k](Watt power) {
+    return CelsiusPerHour{power.value / j_per_k * kSecondsPerHour};
+  };
+  return {.boost = rate(plant.boost_maximum),
+          .normal = rate(plant.normal_maximum),
+          .cooling = rate(plant.cooling_maximum),
+          .time_constant = Seconds{j_per_k / plant.carrier_ambient_w_per_k}};
+}
+
 Result<BenchConfig> load_bench(const std::filesystem::path& file) {
   auto bench = read_config<BenchConfig>(file);
-  if (bench && bench->interlocks.empty()) bench->interlocks = default_interlocks(*bench);
+  if (!bench) return bench;
+  if (bench->interlocks.empty()) bench->interlocks = default_interlocks(*bench);
+  if (!bench->thermal && bench->thermostat.connection == "simulated") {
+    bench->thermal = reach_of(bench->simulation.thermal);
+  }
   return bench;
 }
 

@@ -28,8 +28,6 @@ struct InstrumentConfig {
 
 struct ThermostatConfig : InstrumentConfig {
   ModbusDevice device;
-  /// First-order lag of the sensors on the carrier, which the averages are freed of.
-  Seconds sensor_lag{0.0};
 };
 struct MagnetometerConfig : InstrumentConfig {
   /// false: the field is reckoned from the coils' currents and `ambient_ut`.
@@ -85,6 +83,18 @@ struct BenchLimits {
   Seconds run_time_maximum{172800.0};
 };
 
+/// What heaters, cooler and room can do to the gyro's temperature T, to first order:
+///
+///   -cooling - (T - room)/time constant  <=  dT/dt  <=  heating - (T - room)/time constant
+///
+/// A plan asks for no more.
+struct ThermalReach {
+  CelsiusPerHour boost{0.0};    ///< heating with the boost heaters, at the room's temperature
+  CelsiusPerHour normal{0.0};   ///< with the normal heater, which holds
+  CelsiusPerHour cooling{0.0};  ///< of the cooler, at the room's temperature; 0: there is none
+  Seconds time_constant{0.0};   ///< with which it comes to the room's temperature by itself
+};
+
 /// How long things take on this bench, for a plan's estimate; the run itself waits for evidence.
 struct EstimateConfig {
   Celsius room{21.0};
@@ -106,6 +116,7 @@ struct ThermalPlant {
   double carrier_ambient_w_per_k = 0.22;  ///< at most 0.265: 9 W must hold +34 degC
   Watt boost_maximum{12.0};
   Watt normal_maximum{9.0};
+  Watt cooling_maximum{0.0};    ///< of a chamber's cooler, which the controller drives too
   Celsius boost_drop_out{2.0};  ///< boost heaters switch off this far below the target
   Seconds dead_time{10.0};
   double pid_gain_w_per_k = 10.0;
@@ -162,6 +173,8 @@ struct BenchConfig {
   GyroConfig gyro;
   std::vector<AuxiliaryConfig> auxiliary;
   BenchLimits limits;
+  /// Nothing where nobody has said it: then a plan cannot know.
+  std::optional<ThermalReach> thermal;
   std::vector<InterlockConfig> interlocks;  ///< load_bench puts the default ones where none are
   EstimateConfig estimates;
   SimulationConfig simulation;
@@ -172,6 +185,9 @@ std::vector<SensorChannel> auxiliary_channels(const BenchConfig& bench);
 
 /// The first moment of a day written YYYY-MM-DD; nothing when there is no such day.
 std::optional<std::chrono::sys_days> date_of(const std::string& text);
+
+/// What the simulated plant can do.
+ThermalReach reach_of(const ThermalPlant& plant);
 
 /// The device file that a bench's file means by "device": a path relative to the bench's file, or
 /// the name of one in the folder devices beside the bench's own folder, or of a ready one.

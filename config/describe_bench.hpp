@@ -74,9 +74,11 @@ void describe(Visitor& v, ThermostatConfig& t) {
   v.required("device", DeviceReference<ModbusDevice>{t.device},
              "Its description, a device file of the kind modbus: a ready one's name, or a path "
              "from this file.");
-  v.optional("sensor_lag_s", t.sensor_lag,
-             "First-order lag of the sensors on the carrier; averages are freed of it.",
-             between(0, 120));
+  v.optional(
+      "sensor_lag_s", t.device.sensor_lag,
+      "First-order lag of the sensors on the carrier, in place of the device file's; averages "
+      "are freed of it.",
+      between(0, 120));
 }
 
 template <class Visitor>
@@ -157,6 +159,19 @@ void describe(Visitor& v, BenchLimits& l) {
 }
 
 template <class Visitor>
+void describe(Visitor& v, ThermalReach& t) {
+  v.required("boost_c_per_h", t.boost,
+             "How fast the boost heaters warm the gyro at the room's temperature.", above(0));
+  v.required("normal_c_per_h", t.normal,
+             "How fast the normal heater does, which holds a temperature.", above(0));
+  v.optional("cooling_c_per_h", t.cooling,
+             "How fast a cooler cools it at the room's temperature; 0: there is none.",
+             at_least(0));
+  v.required("time_constant_s", t.time_constant,
+             "With which it comes to the room's temperature by itself.", above(0));
+}
+
+template <class Visitor>
 void describe(Visitor& v, EstimateConfig& e) {
   v.optional("room_c", e.room, "Usual temperature of the room.");
   v.optional("heating_c_per_h", e.heating, "With the boost heaters.", above(0));
@@ -178,6 +193,9 @@ void describe(Visitor& v, ThermalPlant& t) {
              "Loss to the room; at most 0.265 if 9 W are to hold +34 degC.", above(0));
   v.optional("boost_maximum_w", t.boost_maximum, "Power of all boost heaters.", above(0));
   v.optional("normal_maximum_w", t.normal_maximum, "Power of the normal heater.", above(0));
+  v.optional("cooling_maximum_w", t.cooling_maximum,
+             "Power of a chamber's cooler, which the controller drives in normal mode; 0: none.",
+             at_least(0));
   v.optional("boost_drop_out_c", t.boost_drop_out,
              "The boost heaters switch off this far below the target.", at_least(0));
   v.optional("dead_time_s", t.dead_time, "From a change of power to the carrier.",
@@ -248,6 +266,9 @@ void describe(Visitor& v, BenchConfig& b) {
              "Sensors that are recorded beside the measurement: each of their quantities is a "
              "channel of the record.");
   v.optional("limits", b.limits, "What no procedure may exceed here.");
+  v.optional("thermal", b.thermal,
+             "What heaters, cooler and room can do to the gyro's temperature: a plan asks for no "
+             "more. A simulated bench has it from its plant.");
   v.optional("interlocks", b.interlocks,
              "What may not be while a run goes on, and what is done when it is; without this list, "
              "one of each kind but those of channels.",

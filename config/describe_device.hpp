@@ -73,6 +73,9 @@ void describe(Visitor& v, ModbusDevice& d) {
   v.required("target_minimum_c", d.target_minimum, "Lowest set point that the instrument takes.");
   v.required("target_maximum_c", d.target_maximum, "Highest set point that the instrument takes.");
   v.optional("max_age_s", d.max_age, "An older reading is stale.", above(0));
+  v.optional("sensor_lag_s", d.sensor_lag,
+             "First-order lag of its sensors on the carrier; averages are freed of it.",
+             between(0, 120));
   v.optional("stuck_after_s", d.stuck_after,
              "All temperatures unchanged to the last bit for this long are stale. Leave it out "
              "where the resolution is coarser than the noise.",

@@ -15,8 +15,8 @@ constexpr std::array<EnumName<Axis>, 4> enum_names(Axis /*axis*/) {
   return {{{"x", Axis::kX}, {"y", Axis::kY}, {"z", Axis::kZ}, {"north", Axis::kNorth}}};
 }
 
-/// A number, a list, or "$name" of a parameter. Bounds hold for what stands there literally; the
-/// value of a parameter is checked when it is known.
+/// A number, a list, a range, or "$name" of a parameter. Bounds hold for what stands there
+/// literally; the value of a parameter is checked when it is known.
 template <>
 struct Codec<Number> {
   static bool read(const Place& at, Number& out, const Rule& rule);
@@ -30,6 +30,12 @@ struct Codec<NumberList> {
   static ordered_json write(const NumberList& list);
 };
 template <>
+struct Codec<Argument> {
+  static bool read(const Place& at, Argument& out, const Rule& rule);
+  static ordered_json schema(const Rule& rule);
+  static ordered_json write(const Argument& argument);
+};
+template <>
 struct Codec<ParameterValue> {
   static bool read(const Place& at, ParameterValue& out, const Rule& rule);
   static ordered_json schema(const Rule& rule);
@@ -39,6 +45,9 @@ struct Codec<ParameterValue> {
 /// The value of the key "step".
 constexpr std::string_view step_name(const SetTemperature& /*step*/) {
   return "set_temperature";
+}
+constexpr std::string_view step_name(const Ramp& /*step*/) {
+  return "ramp";
 }
 constexpr std::string_view step_name(const SettleTemperature& /*step*/) {
   return "settle_temperature";
@@ -70,6 +79,9 @@ constexpr std::string_view step_name(const Call& /*step*/) {
 constexpr std::string_view step_name(const ForEach& /*step*/) {
   return "for_each";
 }
+constexpr std::string_view step_name(const Repeat& /*step*/) {
+  return "repeat";
+}
 constexpr std::string_view step_name(const Indivisible& /*step*/) {
   return "indivisible";
 }
@@ -84,10 +96,29 @@ struct Codec<Step> {
 };
 
 template <class Visitor>
+void describe(Visitor& v, NumberRange& r) {
+  v.required("from", r.from, "The first value.");
+  v.required("to", r.to, "Where it ends: the last value does not pass it.");
+  v.optional("step", r.step, "From one value to the next, whichever way it goes.", above(0));
+}
+
+template <class Visitor>
 void describe(Visitor& v, SetTemperature& s) {
   v.tag("step", step_name(s));
   v.required("mode", s.mode, "Heating mode: boost, normal, or off.");
   v.optional("target_c", s.target_c, "Set point; needed unless the mode is off.");
+}
+
+template <class Visitor>
+void describe(Visitor& v, Ramp& s) {
+  v.tag("step", step_name(s));
+  v.required("to_c", s.to_c, "Temperature at its end.");
+  v.required("rate_c_per_h", s.rate_c_per_h, "How fast, up or down; 60 is 1 degC/min.", above(0));
+  v.optional("mode", s.mode, "Heaters on the way up: boost or normal.");
+  v.optional("settle", s.settle,
+             "Wait at its end until the temperature has settled, as settle_temperature does.");
+  v.optional("segment", s.segment, "Records averages under this name meanwhile.");
+  v.optional("window_s", s.window_s, "Length of these averages.", above(0));
 }
 
 template <class Visitor>
@@ -162,6 +193,9 @@ void describe(Visitor& v, Call& s) {
   v.tag("step", step_name(s));
   v.required("procedure", s.procedure, "Name of another procedure.");
   v.optional("parameters", s.parameters, "Values in place of its defaults.");
+  v.optional("pass", s.pass,
+             "Parameters of it that are this procedure's too, with the defaults that they have "
+             "there.");
   v.optional("test", s.test, "Marks its points as test 1, 2...", at_least(1));
 }
 
@@ -174,6 +208,13 @@ void describe(Visitor& v, ForEach& s) {
 }
 
 template <class Visitor>
+void describe(Visitor& v, Repeat& s) {
+  v.tag("step", step_name(s));
+  v.required("times", s.times, "How often.", at_least(0));
+  v.required("steps", s.steps, "What is done each time.", not_empty());
+}
+
+template <class Visitor>
 void describe(Visitor& v, Indivisible& s) {
   v.tag("step", step_name(s));
   v.required("steps", s.steps, "Restarted from the first one after any interruption.", not_empty());
@@ -183,7 +224,7 @@ template <class Visitor>
 void describe(Visitor& v, ProcedureConfig& p) {
   v.required("name", p.name, "Short name.");
   v.optional("description", p.description, "What it measures, in a sentence.");
-  v.optional("parameters", p.parameters, "Defaults: a number or a list of numbers each.");
+  v.optional("parameters", p.parameters, "Defaults: a number, a list of numbers or a range each.");
   v.optional(
       "needs", p.needs,
       "Channels of the bench's auxiliary sensors without which a point is void; without this "
@@ -192,6 +233,7 @@ void describe(Visitor& v, ProcedureConfig& p) {
 }
 
 bool check(const Place& at, const SetTemperature& step);
+bool check(const Place& at, const Ramp& step);
 bool check(const Place& at, const Wait& step);
 bool check(const Place& at, const ForEach& step);
 bool check(const Place& at, const ProcedureConfig& procedure);

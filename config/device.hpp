@@ -54,6 +54,8 @@ struct ModbusDevice {
   Celsius target_minimum{0.0};
   Celsius target_maximum{0.0};
   Seconds max_age{2.0};  ///< an older reading is stale
+  /// First-order lag of the sensors on the carrier, which the averages are freed of.
+  Seconds sensor_lag{0.0};
   /// All temperatures unchanged to the last bit for this long are stale; nothing where the
   /// resolution is coarser than the noise.
   std::optional<Seconds> stuck_after;

@@ -17,8 +17,22 @@ namespace fogbench::config {
 
 /// A number, or the name of a parameter that stands for one ("$temperature_c").
 using Number = std::variant<double, std::string>;
-/// A list of numbers, or the name of a parameter that holds one ("$levels_ut").
-using NumberList = std::variant<std::vector<double>, std::string>;
+/// {"from": 20, "to": 50, "step": 5}: 20, 25 ... 50; down where `to` lies below `from`. The last is
+/// the last one that does not pass `to`.
+struct NumberRange {
+  Number from = 0.0;
+  Number to = 0.0;
+  Number step = 1.0;
+};
+
+/// A list of numbers, the name of a parameter that holds one ("$levels_ut"), or a range.
+using NumberList = std::variant<std::vector<double>, std::string, NumberRange>;
+
+/// A loop or a sweep of more values has gone wrong.
+inline constexpr std::size_t kMostValues = 100'000;
+/// The numbers of a range. kBadInput, without a place: a step of 0 or less, one that is not finite,
+/// more than kMostValues.
+Result<std::vector<double>> range_values(double from, double to, double step);
 
 enum class HeatingMode { kOff, kBoost, kNormal };
 /// As the run log and the exports spell it.
@@ -53,6 +67,19 @@ struct SettleTemperature {
   Number dwell_s = 300.0;
   Number slope_c_per_h = 1.0;
   Number timeout_s = 7200.0;
+  std::string segment;
+  Number window_s = 60.0;
+};
+
+/// Moves the target from the present temperature to to_c at rate_c_per_h, and holds it there in
+/// normal mode. Upwards with the heaters of `mode`. Records like SettleTemperature when it has a
+/// segment. With `settle` it ends as a SettleTemperature of the default criteria does, else when
+/// the target has arrived.
+struct Ramp {
+  Number to_c = 0.0;
+  Number rate_c_per_h = 30.0;
+  HeatingMode mode = HeatingMode::kBoost;
+  bool settle = false;
   std::string segment;
   Number window_s = 60.0;
 };
@@ -105,10 +132,15 @@ struct Prompt {
   std::string text;
 };
 
-/// Runs another procedure; `test` marks its points as test 1, 2...
+/// What a call gives to a parameter of the procedure that it calls.
+using Argument = std::variant<double, std::vector<double>, std::string, NumberRange>;
+
+/// Runs another procedure; `test` marks its points as test 1, 2... `pass` names parameters of it
+/// that become the caller's own, with the defaults that they have there.
 struct Call {
   std::string procedure;
-  std::map<std::string, Number> parameters;
+  std::map<std::string, Argument> parameters;
+  std::vector<std::string> pass;
   int test = 0;
 };
 
@@ -119,14 +151,20 @@ struct ForEach {
   std::vector<Step> steps;
 };
 
+/// Runs `steps` so many times.
+struct Repeat {
+  Number times = 1.0;
+  std::vector<Step> steps;
+};
+
 /// Restarts from its first step after any interruption.
 struct Indivisible {
   std::vector<Step> steps;
 };
 
 struct Step {
-  std::variant<SetTemperature, SettleTemperature, Wait, Average, Baseline, CompensateField, Sweep,
-               Rotate, Prompt, Call, ForEach, Indivisible>
+  std::variant<SetTemperature, Ramp, SettleTemperature, Wait, Average, Baseline, CompensateField,
+               Sweep, Rotate, Prompt, Call, ForEach, Repeat, Indivisible>
       action;
   std::string pointer;  ///< JSON pointer of the step, for messages
 };
@@ -145,7 +183,13 @@ struct ProcedureConfig {
   std::filesystem::path file;
 };
 
+/// Names of the parameters that its calls, in loops and blocks too, pass on to other procedures.
+std::vector<std::string> passed_parameters(const ProcedureConfig& procedure);
+
 /// Errors: kBadInput, one line with the file and the JSON pointer.
 Result<ProcedureConfig> load_procedure(const std::filesystem::path& file);
+
+/// Reads one into `out`, and everything that is wrong in it, a line each; empty when nothing is.
+std::vector<Error> check_procedure_file(const std::filesystem::path& file, ProcedureConfig& out);
 
 }  // namespace fogbench::config

@@ -17,12 +17,14 @@ config::Ampere worst_current(Axis axis, Microtesla level, const config::BenchCon
 /// What a coil and its supply both allow.
 config::Ampere current_limit(const config::CoilConfig& coil);
 
-/// One sentence for each kind of limit met. Errors: kLimit (temperature, field, current, run time)
-/// and kBadInput (a sweep along an axis that the gyro's azimuth keeps out of the coils' field, or
-/// without a compensated zero), one line with the step's file and JSON pointer.
+/// One sentence for each kind of limit met. Appends to `problems` what is not: kLimit (temperature
+/// and its rate, field, current, run time) and kBadInput (a sweep along an axis that the gyro's
+/// azimuth keeps out of the coils' field, or without a compensated zero), one line each with the
+/// step's file and JSON pointer.
 /// Preconditions: estimates are filled; a bench starts at azimuth 0.
-Result<std::vector<std::string>> check_limits(const std::string& procedure,
-                                              const std::vector<PlannedStep>& steps,
-                                              const config::BenchConfig& bench);
+std::vector<std::string> check_limits(const std::string& procedure,
+                                      const std::vector<PlannedStep>& steps,
+                                      const config::BenchConfig& bench,
+                                      std::vector<Error>& problems);
 
 }  // namespace fogbench::procedures

@@ -12,9 +12,8 @@ class Estimator {
   explicit Estimator(const config::BenchConfig& bench)
       : bench_(bench), target_(bench.estimates.room), temperature_(bench.estimates.room) {}
 
-  Seconds step(const PlannedStep& step) {
-    const Seconds duration =
-        std::visit([this](const auto& action) { return of(action); }, step.action);
+  Seconds step(PlannedStep& step) {
+    const Seconds duration = std::visit([this](auto& action) { return of(action); }, step.action);
     elapsed_ += duration;
     return duration;
   }
@@ -24,11 +23,15 @@ class Estimator {
     target_ = s.mode == HeatingMode::kOff ? bench_.estimates.room : s.target;
     return Seconds{0.0};
   }
+  Seconds of(Ramp& s) {
+    s.from = temperature_;
+    target_ = temperature_ = s.to;
+    return Seconds{3600.0 * std::abs(s.to.value - s.from.value) / s.rate.value};
+  }
   Seconds of(const SettleTemperature& s) {
     const double distance = target_.value - temperature_.value;
     const double way = std::max(0.0, std::abs(distance) - s.band.value);
-    const config::CelsiusPerHour speed =
-        distance > 0 ? bench_.estimates.heating : bench_.estimates.cooling;
+    const CelsiusPerHour speed = distance > 0 ? bench_.estimates.heating : bench_.estimates.cooling;
     temperature_ =
         s.dwell.count() > 0 ? target_ : Celsius{temperature_.value + std::copysign(way, distance)};
     Seconds duration = Seconds{3600.0 * way / speed.value} + s.dwell;

@@ -8,8 +8,9 @@
 
 namespace fogbench::procedures {
 
-/// Fills `estimate` of every step. Temperatures change at the bench's constant heating and cooling
-/// rates, starting from the room's.
+/// Fills `estimate` of every step, and where its ramps start. Temperatures start from the room's;
+/// but for ramps, which say their rate, they change at the bench's constant heating and cooling
+/// rates.
 void estimate_durations(std::vector<PlannedStep>& steps, const config::BenchConfig& bench);
 
 }  // namespace fogbench::procedures

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "procedures/branches.hpp"
@@ -28,14 +29,22 @@ std::string names_of(const Parameters& parameters) {
 }
 
 /// The procedure's defaults with `given` in their place. A single number stands for a list of one.
+/// What it passes on to others it knows only when it is given.
 Result<Parameters> bind_parameters(const ProcedureConfig& procedure, const Parameters& given,
                                    const std::string& where) {
   Parameters bound = procedure.parameters;
+  const std::vector<std::string> passed = config::passed_parameters(procedure);
   for (const auto& [name, value] : given) {
     const auto found = bound.find(name);
+    if (found == bound.end() && std::binary_search(passed.begin(), passed.end(), name)) {
+      bound.emplace(name, value);
+      continue;
+    }
     if (found == bound.end()) {
+      Parameters known = procedure.parameters;
+      for (const std::string& one : passed) known.emplace(one, 0.0);
       return config::bad_input(fmt::format("{}: procedure {} has no parameter \"{}\" ({})", where,
-                                           procedure.name, name, names_of(procedure.parameters)));
+                                           procedure.name, name, names_of(known)));
     }
     const bool wants_list = std::holds_alternative<std::vector<double>>(found->second);
     const bool is_list = std::holds_alternative<std::vector<double>>(value);
@@ -59,35 +68,53 @@ struct Place {
   std::vector<std::string> chain;  ///< procedures being called, outermost first
   int test = 1;
   int block = 0;
+  bool outermost = true;  ///< each step, or turn of a loop, is a phase of its own
 };
 
 class Expander {
  public:
-  explicit Expander(const ProcedureLoader& loader) : loader_(loader) {}
+  Expander(const ProcedureLoader& loader, std::vector<Error>& problems)
+      : loader_(loader), problems_(problems) {}
 
-  Status expand_all(const std::vector<config::Step>& steps, const Place& place,
-                    const std::string& prefix) {
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      const std::string path = prefix + std::to_string(i + 1);
-      const auto one = expand_one(steps[i], place, path);
-      if (!one) return one;
+  void expand_all(const std::vector<config::Step>& steps, const Place& place,
+                  const std::string& prefix) {
+    for (std::size_t i = 0; i < steps.size() && !stopped_; ++i) {
+      if (place.outermost) begin_phase("");
+      expand_one(steps[i], place, prefix + std::to_string(i + 1));
     }
-    return {};
   }
 
   std::vector<PlannedStep> take() { return std::move(steps_); }
 
  private:
-  Status expand_one(const config::Step& step, const Place& place, const std::string& path) {
+  void expand_one(const config::Step& step, const Place& place, const std::string& path) {
     where_ = location(*place.procedure, step.pointer);
     place_ = &place;
     failure_.reset();
+    const std::size_t before = steps_.size();
     // Steps that leave nothing in the plan are counted too, or loops of them would never end.
-    if (++expanded_ > kMaximumSteps) return too_many();
     const auto status =
-        std::visit([&](const auto& action) { return add(action, path); }, step.action);
-    if (failure_) return *failure_;
-    return status;
+        ++expanded_ > kMaximumSteps
+            ? too_many()
+            : std::visit([&](const auto& action) { return add(action, path); }, step.action);
+    // Steps within this one have said for themselves what is wrong with them.
+    if (failure_) steps_.resize(before);
+    if (failure_) note(*failure_);
+    if (!status) note(status.error());
+    failure_.reset();
+  }
+
+  /// In a loop the same is wrong at every turn.
+  void note(const Error& problem) {
+    const bool known = std::any_of(problems_.begin(), problems_.end(), [&](const Error& other) {
+      return other.message == problem.message;
+    });
+    if (!known) problems_.push_back(problem);
+  }
+
+  void begin_phase(std::string says) {
+    ++phase_;
+    phase_says_ = std::move(says);
   }
 
   // A wrong number is remembered and reported once the step is built, so that each step below reads
@@ -138,8 +165,20 @@ class Expander {
     return config::bad_input(
         fmt::format("{}: {} is a list, expected one number", where_, reference));
   }
+  Result<std::vector<double>> resolve(const config::NumberRange& range) const {
+    const auto from = resolve(range.from);
+    if (!from) return from.error();
+    const auto to = resolve(range.to);
+    if (!to) return to.error();
+    const auto step = resolve(range.step);
+    if (!step) return step.error();
+    auto values = config::range_values(*from, *to, *step);
+    if (!values) return config::bad_input(fmt::format("{}: {}", where_, values.error().message));
+    return values;
+  }
   Result<std::vector<double>> resolve(const NumberList& list) const {
     if (const auto* values = std::get_if<std::vector<double>>(&list)) return *values;
+    if (const auto* range = std::get_if<config::NumberRange>(&list)) return resolve(*range);
     const auto& reference = std::get<std::string>(list);
     const auto value = look_up(reference);
     if (!value) return value.error();
@@ -148,7 +187,8 @@ class Expander {
         fmt::format("{}: {} is one number, expected a list", where_, reference));
   }
 
-  Error too_many() const {
+  Status too_many() {
+    stopped_ = true;
     return config::bad_input(
         fmt::format("{}: the procedure expands to more than {} steps", where_, kMaximumSteps));
   }
@@ -162,6 +202,8 @@ class Expander {
     step.where = where_;
     step.test = place_->test;
     step.block = block;
+    step.phase = phase_;
+    step.phase_says = phase_says_;
     steps_.push_back(std::move(step));
     return {};
   }
@@ -174,6 +216,16 @@ class Expander {
     const bool heated = s.mode != HeatingMode::kOff;
     return append(SetTemperature{Celsius{heated ? number(s.target_c, "target_c") : 0.0}, s.mode},
                   path);
+  }
+  Status add(const config::Ramp& s, const std::string& path) {
+    Ramp ramp{Celsius{number(s.to_c, "to_c")},
+              CelsiusPerHour{positive(s.rate_c_per_h, "rate_c_per_h")}, s.mode, s.segment,
+              Seconds{positive(s.window_s, "window_s")}};
+    if (!s.settle || failure_) return append(std::move(ramp), path);
+    const auto appended = append(std::move(ramp), path + ".1");
+    if (!appended) return appended;
+    return add(config::SettleTemperature{.segment = s.segment, .window_s = s.window_s},
+               path + ".2");
   }
   Status add(const config::SettleTemperature& s, const std::string& path) {
     SettleTemperature settle{Celsius{positive(s.band_c, "band_c")},
@@ -242,17 +294,38 @@ class Expander {
     const auto values = resolve(s.in);
     if (!values) return values.error();
     Place inner = *place_;
-    for (std::size_t turn = 0; turn < values->size(); ++turn) {
+    inner.outermost = false;
+    const bool outermost = place_->outermost;
+    for (std::size_t turn = 0; turn < values->size() && !stopped_; ++turn) {
       inner.parameters[s.variable] = (*values)[turn];
-      const auto done = expand_all(s.steps, inner, path + "." + std::to_string(turn + 1) + ".");
-      if (!done) return done;
+      if (outermost) begin_phase(fmt::format("{} {}", s.variable, (*values)[turn]));
+      expand_all(s.steps, inner, turn_of(path, turn));
+    }
+    return {};
+  }
+  Status add(const config::Repeat& s, const std::string& path) {
+    const double times = not_negative(s.times, "times");
+    if (failure_) return {};
+    if (times != std::floor(times) || times > static_cast<double>(kMaximumSteps)) {
+      return config::bad_input(fmt::format("{}: times is {}, expected a whole number, {} at most",
+                                           where_, times, kMaximumSteps));
+    }
+    Place inner = *place_;
+    inner.outermost = false;
+    const bool outermost = place_->outermost;
+    for (std::size_t turn = 0; static_cast<double>(turn) < times && !stopped_; ++turn) {
+      if (outermost) begin_phase(fmt::format("turn {} of {}", turn + 1, times));
+      expand_all(s.steps, inner, turn_of(path, turn));
     }
     return {};
   }
   Status add(const config::Indivisible& s, const std::string& path) {
     Place inner = *place_;
+    inner.outermost = false;
     if (inner.block == 0) inner.block = ++blocks_;
-    return expand_all(s.steps, inner, path + ".");
+    if (place_->outermost) begin_phase("indivisible");
+    expand_all(s.steps, inner, path + ".");
+    return {};
   }
   Status add(const config::Call& s, const std::string& path) {
     const std::string where = where_;
@@ -267,27 +340,63 @@ class Expander {
       }
     }
     Parameters given;
-    for (const auto& [name, value] : s.parameters) {
-      if (const double* one = std::get_if<double>(&value)) {
-        given[name] = *one;
-      } else {
-        auto looked_up = look_up(std::get<std::string>(value));
-        if (!looked_up) return looked_up.error();
-        given[name] = std::move(*looked_up);
+    for (const std::string& name : s.pass) {
+      if (s.parameters.contains(name)) {
+        return config::bad_input(
+            fmt::format("{}: \"{}\" stands in parameters and in pass", where, name));
       }
+      if (!called->parameters.contains(name) && !passes(*called, name)) {
+        return config::bad_input(
+            fmt::format("{}: procedure {} has no parameter \"{}\" to pass ({})", where,
+                        called->name, name, names_of(called->parameters)));
+      }
+      const auto own = place_->parameters.find(name);
+      if (own != place_->parameters.end()) given[name] = own->second;
+    }
+    for (const auto& [name, argument] : s.parameters) {
+      auto value = std::visit([this](const auto& a) { return value_of(a); }, argument);
+      if (!value) return value.error();
+      given[name] = std::move(*value);
     }
     auto bound = bind_parameters(*called, given, where);
     if (!bound) return bound.error();
     inner.procedure = &*called;
     inner.parameters = std::move(*bound);
+    inner.outermost = false;
     if (s.test != 0) inner.test = s.test;
-    return expand_all(called->steps, inner, path + ".");
+    if (place_->outermost) {
+      begin_phase(called->name + (s.test != 0 ? fmt::format(", test {}", s.test) : ""));
+    }
+    expand_all(called->steps, inner, path + ".");
+    return {};
+  }
+
+  static std::string turn_of(const std::string& path, std::size_t turn) {
+    return path + "." + std::to_string(turn + 1) + ".";
+  }
+  static bool passes(const ProcedureConfig& procedure, const std::string& name) {
+    const auto passed = config::passed_parameters(procedure);
+    return std::binary_search(passed.begin(), passed.end(), name);
+  }
+  Result<ParameterValue> value_of(double number) const { return ParameterValue{number}; }
+  Result<ParameterValue> value_of(const std::vector<double>& list) const {
+    return ParameterValue{list};
+  }
+  Result<ParameterValue> value_of(const std::string& reference) const { return look_up(reference); }
+  Result<ParameterValue> value_of(const config::NumberRange& range) const {
+    auto values = resolve(range);
+    if (!values) return values.error();
+    return ParameterValue{std::move(*values)};
   }
 
   const ProcedureLoader& loader_;
+  std::vector<Error>& problems_;
   std::vector<PlannedStep> steps_;
   std::size_t expanded_ = 0;
   int blocks_ = 0;
+  int phase_ = 0;
+  std::string phase_says_;
+  bool stopped_ = false;
   // Of the step being expanded.
   std::string where_;
   const Place* place_ = nullptr;
@@ -299,12 +408,21 @@ class Expander {
 Result<std::vector<PlannedStep>> expand(const ProcedureConfig& procedure,
                                         const Parameters& overrides,
                                         const ProcedureLoader& loader) {
+  std::vector<Error> problems;
+  auto steps = expand(procedure, overrides, loader, problems);
+  if (!problems.empty()) return std::move(problems.front());
+  return steps;
+}
+
+std::vector<PlannedStep> expand(const ProcedureConfig& procedure, const Parameters& overrides,
+                                const ProcedureLoader& loader, std::vector<Error>& problems) {
   auto parameters = bind_parameters(procedure, overrides, location(procedure, "/parameters"));
-  if (!parameters) return parameters.error();
-  Expander expander(loader);
-  const Place place{&procedure, std::move(*parameters), {procedure.name}};
-  const auto done = expander.expand_all(procedure.steps, place, "");
-  if (!done) return done.error();
+  if (!parameters) {
+    problems.push_back(parameters.error());
+    parameters = procedure.parameters;
+  }
+  Expander expander(loader, problems);
+  expander.expand_all(procedure.steps, {&procedure, std::move(*parameters), {procedure.name}}, "");
   return expander.take();
 }
 

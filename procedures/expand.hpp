@@ -25,4 +25,10 @@ inline constexpr std::size_t kMaximumSteps = 100'000;
 Result<std::vector<PlannedStep>> expand(const config::ProcedureConfig& procedure,
                                         const Parameters& overrides, const ProcedureLoader& loader);
 
+/// The same to its end, whatever is wrong: appends that to `problems`, and leaves out the steps
+/// that it is wrong with.
+std::vector<PlannedStep> expand(const config::ProcedureConfig& procedure,
+                                const Parameters& overrides, const ProcedureLoader& loader,
+                                std::vector<Error>& problems);
+
 }  // namespace fogbench::procedures

@@ -34,7 +34,7 @@ MeasurementWindow::MeasurementWindow(const config::BenchConfig& config, const dr
               std::llround(config.gyro.max_gap.count() * gyro.frame_rate_hz())),
       start_s_(watch.time_s(gyro.time_of(frames_.begin()))),
       end_s_(watch.time_s(end_time())),
-      temperature_(start_s_, end_s_, config.thermostat.sensor_lag.count()),
+      temperature_(start_s_, end_s_, config.thermostat.device.sensor_lag.count()),
       gradient_(temperature_),
       control_(temperature_),
       needed_(watch.needed()) {
@@ -42,7 +42,7 @@ MeasurementWindow::MeasurementWindow(const config::BenchConfig& config, const dr
 }
 
 drivers::Clock::Instant MeasurementWindow::last_reading_time() const {
-  const double lag_s = config_.thermostat.sensor_lag.count();
+  const double lag_s = config_.thermostat.device.sensor_lag.count();
   if (lag_s == 0.0) return end_time();
   return end_time() + drivers::from_seconds(SensorWindow::reach_s(lag_s));
 }

@@ -27,10 +27,21 @@ Result<config::ProcedureConfig> load_called(const std::string& name,
   return config::load_procedure(*found);
 }
 
-}  // namespace
+Plan plan_of(const std::string& name, std::vector<PlannedStep> steps,
+             const config::BenchConfig& bench, std::vector<Error>& problems) {
+  estimate_durations(steps, bench);
+  Plan plan{.procedure = name, .steps = std::move(steps)};
+  plan.limits_met = check_limits(name, plan.steps, bench, problems);
+  for (PlannedStep& step : plan.steps) {
+    step.says = sentence(step);
+    plan.estimate += step.estimate;
+  }
+  return plan;
+}
 
-Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
-                       const Parameters& overrides) {
+/// Notes everything that is wrong; the plan is one when nothing is.
+Plan plan_of(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
+             const Parameters& overrides, std::vector<Error>& problems) {
   std::vector<std::filesystem::path> files;
   std::vector<std::string> needs;
   const auto note_needs = [&](const config::ProcedureConfig& its) -> Status {
@@ -46,7 +57,7 @@ Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::B
     }
     return {};
   };
-  if (const Status noted = note_needs(procedure); !noted) return noted.error();
+  if (const Status noted = note_needs(procedure); !noted) problems.push_back(noted.error());
   const auto remember = [&files](const std::filesystem::path& file) {
     if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   };
@@ -58,26 +69,40 @@ Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::B
     if (const Status noted = note_needs(*called); !noted) return noted.error();
     return called;
   };
-  auto steps = expand(procedure, overrides, load);
-  if (!steps) return steps.error();
-  auto plan = make_plan(procedure.name, std::move(*steps), bench);
-  if (!plan) return plan;
-  plan->files = std::move(files);
-  plan->needs = std::move(needs);
+  Plan plan =
+      plan_of(procedure.name, expand(procedure, overrides, load, problems), bench, problems);
+  plan.files = std::move(files);
+  plan.needs = std::move(needs);
   return plan;
+}
+
+/// The plan, or the first of the problems.
+Result<Plan> first_of(Plan plan, std::vector<Error> problems) {
+  if (!problems.empty()) return std::move(problems.front());
+  return plan;
+}
+
+}  // namespace
+
+Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
+                       const Parameters& overrides) {
+  std::vector<Error> problems;
+  Plan plan = plan_of(procedure, bench, overrides, problems);
+  return first_of(std::move(plan), std::move(problems));
+}
+
+std::vector<Error> check_procedure(const config::ProcedureConfig& procedure,
+                                   const config::BenchConfig& bench, const Parameters& overrides) {
+  std::vector<Error> problems;
+  plan_of(procedure, bench, overrides, problems);
+  return problems;
 }
 
 Result<Plan> make_plan(const std::string& name, std::vector<PlannedStep> steps,
                        const config::BenchConfig& bench) {
-  estimate_durations(steps, bench);
-  auto met = check_limits(name, steps, bench);
-  if (!met) return met.error();
-  Plan plan{.procedure = name, .steps = std::move(steps), .limits_met = std::move(*met)};
-  for (PlannedStep& step : plan.steps) {
-    step.says = sentence(step);
-    plan.estimate += step.estimate;
-  }
-  return plan;
+  std::vector<Error> problems;
+  Plan plan = plan_of(name, std::move(steps), bench, problems);
+  return first_of(std::move(plan), std::move(problems));
 }
 
 }  // namespace fogbench::procedures

@@ -16,6 +16,7 @@ namespace fogbench::procedures {
 
 using config::Axis;
 using config::Celsius;
+using config::CelsiusPerHour;
 using config::Degree;
 using config::HeatingMode;
 using config::Microtesla;
@@ -26,6 +27,15 @@ using config::Seconds;
 struct SetTemperature {
   Celsius target;
   HeatingMode mode = HeatingMode::kOff;
+};
+struct Ramp {
+  Celsius to;
+  CelsiusPerHour rate;
+  HeatingMode mode = HeatingMode::kBoost;  ///< on the way up
+  std::string segment;
+  Seconds window;
+  /// Where the plan expects it to start; the run starts from what it measures.
+  Celsius from{0.0};
 };
 struct SettleTemperature {
   Celsius band;
@@ -66,7 +76,7 @@ struct Prompt {
 };
 
 struct PlannedStep {
-  std::variant<SetTemperature, SettleTemperature, Wait, Average, CompensateField, SweepLevel,
+  std::variant<SetTemperature, Ramp, SettleTemperature, Wait, Average, CompensateField, SweepLevel,
                Rotate, Prompt>
       action;
   std::string path;   ///< "3.2": place in the procedure; in a loop the middle number is the turn
@@ -77,6 +87,10 @@ struct PlannedStep {
   /// restarts from its first step.
   int block = 0;
   Seconds estimate{0.0};
+  /// Steps of one phase share its number: a step as the procedure has it, a turn of its loop, a
+  /// procedure that it calls. `phase_says` is what the turn or the call is; else empty.
+  int phase = 0;
+  std::string phase_says;
 };
 
 struct Plan {
@@ -93,6 +107,12 @@ struct Plan {
 /// and the step's JSON pointer. `overrides` replace the procedure's parameter defaults.
 Result<Plan> make_plan(const config::ProcedureConfig& procedure, const config::BenchConfig& bench,
                        const Parameters& overrides = {});
+
+/// Everything that keeps the procedure from running on this bench, a line each, as far as it can be
+/// told at once. Empty when make_plan() makes a plan of it.
+std::vector<Error> check_procedure(const config::ProcedureConfig& procedure,
+                                   const config::BenchConfig& bench,
+                                   const Parameters& overrides = {});
 
 /// The second half of it: sentences, estimates and limits of steps that are expanded already.
 Result<Plan> make_plan(const std::string& name, std::vector<PlannedStep> steps,

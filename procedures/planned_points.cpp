@@ -16,9 +16,20 @@ std::size_t windows_in(Seconds wait, Seconds window) {
 std::size_t planned_points(const PlannedStep& step) {
   if (std::holds_alternative<Average>(step.action)) return 1;
   if (std::holds_alternative<SweepLevel>(step.action)) return 1;
-  const auto* wait = std::get_if<Wait>(&step.action);
-  if (wait == nullptr || wait->segment.empty()) return 0;
-  return windows_in(step.estimate, wait->window);
+  return std::visit(
+      [&step](const auto& action) -> std::size_t {
+        if constexpr (requires { action.window; }) {
+          return action.segment.empty() || is_open(step) ? 0
+                                                         : windows_in(step.estimate, action.window);
+        }
+        return 0;
+      },
+      step.action);
+}
+
+bool is_open(const PlannedStep& step) {
+  const auto* settle = std::get_if<SettleTemperature>(&step.action);
+  return settle != nullptr && !settle->segment.empty();
 }
 
 std::size_t planned_points(const Plan& plan) {
@@ -29,12 +40,14 @@ std::size_t planned_points(const Plan& plan) {
 
 bool measures(const Plan& plan) {
   return std::any_of(plan.steps.begin(), plan.steps.end(), [](const PlannedStep& step) {
-    const auto* settle = std::get_if<SettleTemperature>(&step.action);
-    const auto* wait = std::get_if<Wait>(&step.action);
-    return std::holds_alternative<Average>(step.action) ||
-           std::holds_alternative<SweepLevel>(step.action) ||
-           (settle != nullptr && !settle->segment.empty()) ||
-           (wait != nullptr && !wait->segment.empty());
+    return std::visit(
+        [](const auto& action) {
+          if constexpr (requires { action.window; }) return !action.segment.empty();
+          return requires {
+            action.segment;
+          };
+        },
+        step.action);
   });
 }
 

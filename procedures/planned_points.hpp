@@ -15,6 +15,9 @@ std::size_t windows_in(Seconds wait, Seconds window);
 std::size_t planned_points(const PlannedStep& step);
 std::size_t planned_points(const Plan& plan);
 
+/// Whether it records averages on the way to a temperature, as many as it takes.
+bool is_open(const PlannedStep& step);
+
 /// Whether the plan records points at all: a run of it that has none at its end has no result.
 bool measures(const Plan& plan);
 

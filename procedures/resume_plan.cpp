@@ -18,19 +18,23 @@ bool is(const PlannedStep& step) {
 /// A block keeps together: what it waits for inside is its own.
 bool heats_or_waits(const PlannedStep& step) {
   if (step.block != 0) return false;
-  return is<SetTemperature>(step) || is<SettleTemperature>(step) || is<Wait>(step);
+  return is<SetTemperature>(step) || is<Ramp>(step) || is<SettleTemperature>(step) ||
+         is<Wait>(step);
 }
 
-/// The first of the steps in a row that heat, settle or wait, up to the one before `end`.
+/// The first of the steps in a row that heat, settle or wait, up to the one before `end`. A ramp
+/// begins a row of its own: what came before is done, and can be gone back to.
 std::size_t start_of_heating(const Steps& steps, std::size_t end) {
-  while (end > 0 && heats_or_waits(steps[end - 1])) --end;
+  while (end > 0 && heats_or_waits(steps[end - 1])) {
+    if (is<Ramp>(steps[--end])) break;
+  }
   return end;
 }
 
-template <class Action>
+template <class... Actions>
 std::optional<std::size_t> last(const Steps& steps, std::size_t before) {
   for (std::size_t i = before; i-- > 0;) {
-    if (is<Action>(steps[i])) return i;
+    if ((is<Actions>(steps[i]) || ...)) return i;
   }
   return std::nullopt;
 }
@@ -47,7 +51,7 @@ std::vector<std::size_t> redone_steps(const Steps& steps, std::size_t first) {
     std::fill(again.begin() + static_cast<std::ptrdiff_t>(begin),
               again.begin() + static_cast<std::ptrdiff_t>(end), true);
   };
-  if (const auto heat = last<SetTemperature>(steps, first)) {
+  if (const auto heat = last<SetTemperature, Ramp>(steps, first)) {
     std::size_t end = *heat + 1;
     while (end < first && heats_or_waits(steps[end])) ++end;
     mark(std::min(*heat, start_of_heating(steps, end)), end);
@@ -74,13 +78,31 @@ std::vector<std::size_t> redone_steps(const Steps& steps, std::size_t first) {
   return indices;
 }
 
-PlannedStep redone(PlannedStep step) {
+/// Appends a step, so that it records nothing: its points have been recorded. The way of a ramp is
+/// gone as fast as the heaters can: how it came there the first time is on record.
+void append_redone(PlannedStep step, Steps& steps) {
   step.path = kRedone + step.path;
   step.block = 0;
-  // Its points have been recorded.
-  if (auto* settle = std::get_if<SettleTemperature>(&step.action)) settle->segment.clear();
-  if (auto* wait = std::get_if<Wait>(&step.action)) wait->segment.clear();
-  return step;
+  std::visit(
+      [](auto& action) {
+        if constexpr (requires { action.window; }) action.segment.clear();
+      },
+      step.action);
+  if (const auto* ramp = std::get_if<Ramp>(&step.action)) {
+    const Celsius to = ramp->to;
+    PlannedStep heat = step;
+    heat.action = SetTemperature{to, HeatingMode::kBoost};
+    heat.path += ".1";
+    steps.push_back(std::move(heat));
+    step.action = SettleTemperature{.band = Celsius{0.5},
+                                    .dwell = Seconds{0.0},
+                                    .slope_c_per_h = 1.0,
+                                    .timeout = Seconds{28800.0},
+                                    .segment = {},
+                                    .window = Seconds{60.0}};
+    step.path += ".2";
+  }
+  steps.push_back(std::move(step));
 }
 
 }  // namespace
@@ -92,7 +114,7 @@ std::size_t first_step_left(const Plan& whole, std::size_t at) {
     while (at > 0 && steps[at - 1].block == block) --at;
     return at;
   }
-  return heats_or_waits(steps[at]) ? start_of_heating(steps, at) : at;
+  return heats_or_waits(steps[at]) && !is<Ramp>(steps[at]) ? start_of_heating(steps, at) : at;
 }
 
 Result<ResumePlan> resume_plan(const Plan& whole, std::size_t at,
@@ -102,7 +124,7 @@ Result<ResumePlan> resume_plan(const Plan& whole, std::size_t at,
   Steps steps;
   if (resumed.first < whole.steps.size()) {
     for (const std::size_t index : redone_steps(whole.steps, resumed.first)) {
-      steps.push_back(redone(whole.steps[index]));
+      append_redone(whole.steps[index], steps);
     }
   }
   resumed.redone = steps.size();

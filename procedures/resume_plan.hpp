@@ -4,7 +4,7 @@
 //
 //   left      from the interrupted step; from the first one of its indivisible block, because the
 //             field's history matters; from the first one of its heating (targets, settling, waits
-//             in a row), because a rise that was interrupted is no rise
+//             in a row), because a rise that was interrupted is no rise; a ramp begins one
 //   redone    before them and without recording anything: the heating that led to the temperature
 //   of
 //             that moment, its soak included; the gyro's warm-up, because nobody knows how long it

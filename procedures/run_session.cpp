@@ -15,6 +15,15 @@
 namespace fogbench::procedures {
 namespace {
 
+/// A temperature that near to its target is held there: a ramp goes on from the target, so that it
+/// takes as long as its rate says.
+constexpr Celsius kHeld{2.0};
+/// Farther behind at its end, a ramp was none.
+constexpr Celsius kFarBehind{3.0};
+/// By so much a ramp moves its target at a time: the resolution of the usual controllers, whose
+/// memory outlives only so many writes.
+constexpr Celsius kRampStep{0.1};
+
 using config::Ampere;
 using drivers::from_seconds;
 
@@ -140,13 +149,12 @@ Result<StepResult> RunSession::act(const SettleTemperature& step) {
   return StepResult{detector.evidence_json(), {}};
 }
 
-Result<StepResult> RunSession::act(const Wait& step) {
-  TransientRecorder transients(config_, *bench_.gyro, watch_, step.segment, step.window,
+Status RunSession::record_until(drivers::Clock::Instant deadline, const std::string& segment,
+                                Seconds window, const std::function<Status()>& each) {
+  TransientRecorder transients(config_, *bench_.gyro, watch_, segment, window,
                                [this](const Point& p) { return record(p); });
-  const auto deadline = std::max(watch_.now() + from_seconds(step.duration.count()),
-                                 watch_.power_on() + from_seconds(step.operating_time.count()));
   const Seconds wait{drivers::to_seconds(deadline - watch_.now())};
-  const std::size_t due = step.segment.empty() ? 0 : windows_in(wait, step.window);
+  const std::size_t due = segment.empty() ? 0 : windows_in(wait, window);
   // The first average begins with the first reading, so that the last one ends a moment after the
   // wait. One that a gap has put off is not waited for.
   const auto goes_on = [&] {
@@ -155,14 +163,73 @@ Result<StepResult> RunSession::act(const Wait& step) {
   };
   while (goes_on()) {
     const auto now = watch_.now();
-    const auto ticked = tick(now < deadline ? deadline : now + std::chrono::milliseconds{20});
-    if (!ticked) return ticked.error();
-    const auto recorded = transients.take();
-    if (!recorded) return recorded.error();
+    auto done = tick(now < deadline ? deadline : now + std::chrono::milliseconds{20});
+    if (done) done = each();
+    if (done) done = transients.take();
+    if (!done) return done;
   }
-  const auto recorded = transients.finish();
-  if (!recorded) return recorded.error();
+  return transients.finish();
+}
+
+Result<StepResult> RunSession::act(const Wait& step) {
+  const auto deadline = std::max(watch_.now() + from_seconds(step.duration.count()),
+                                 watch_.power_on() + from_seconds(step.operating_time.count()));
+  const Status waited = record_until(deadline, step.segment, step.window, [] { return Status{}; });
+  if (!waited) return waited.error();
   return StepResult{};
+}
+
+Result<Celsius> RunSession::ramp_start() {
+  const auto reading = bench_.thermostat->read();
+  if (!reading) return reading.error();
+  const Celsius temperature{working_temperature_c(*reading)};
+  const bool held = heating_ && heating_->mode != HeatingMode::kOff &&
+                    std::abs((heating_->target - temperature).value) <= kHeld.value;
+  return held ? heating_->target : temperature;
+}
+
+Result<StepResult> RunSession::act(const Ramp& step) {
+  const auto start = ramp_start();
+  if (!start) return start.error();
+  const double way_c = (step.to - *start).value;
+  const double duration_s = std::abs(way_c) / step.rate.value * config::kSecondsPerHour;
+  const auto started = act(SetTemperature{*start, way_c > 0.0 ? step.mode : HeatingMode::kNormal});
+  if (!started) return started;
+  const auto began = watch_.now();
+  double behind_c = 0.0, most_behind_c = 0.0;
+  double temperature_c = start->value;
+  const auto follow = [&]() -> Status {
+    const double elapsed_s = drivers::to_seconds(watch_.now() - began);
+    const Celsius target =
+        elapsed_s >= duration_s ? step.to : *start + Celsius{way_c * elapsed_s / duration_s};
+    if (const MonitorRow* row = watch_.new_row();
+        row != nullptr && !std::isnan(row->thermostat.working_1.value)) {
+      temperature_c = working_temperature_c(row->thermostat);
+      behind_c = std::copysign(1.0, way_c) * (target.value - temperature_c);
+      most_behind_c = std::max(most_behind_c, behind_c);
+    }
+    const double moved_c = std::abs((target - heating_->target).value);
+    if (moved_c < kRampStep.value && (target != step.to || moved_c == 0.0)) return {};
+    heating_->target = target;
+    return bench_.thermostat->set_target(target);
+  };
+  const Status waited =
+      record_until(began + from_seconds(duration_s), step.segment, step.window, follow);
+  if (!waited) return waited.error();
+  const auto held = act(SetTemperature{step.to, HeatingMode::kNormal});
+  if (!held) return held;
+  const nlohmann::ordered_json evidence{
+      {"from_c", start->value},         {"to_c", step.to.value}, {"rate_c_per_h", step.rate.value},
+      {"temperature_c", temperature_c}, {"behind_c", behind_c},  {"most_behind_c", most_behind_c}};
+  if (behind_c > kFarBehind.value) {
+    const auto noted = watch_.event(
+        "warning",
+        fmt::format("the ramp to {} degC has ended, the temperature is {:.1f} degC behind",
+                    step.to.value, behind_c),
+        evidence.dump());
+    if (!noted) return noted.error();
+  }
+  return StepResult{evidence.dump(), {}};
 }
 
 Result<StepResult> RunSession::act(const Average& step) {

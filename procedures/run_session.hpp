@@ -69,6 +69,7 @@ class RunSession {
 
  private:
   Result<StepResult> act(const SetTemperature& step);
+  Result<StepResult> act(const Ramp& step);
   Result<StepResult> act(const SettleTemperature& step);
   Result<StepResult> act(const Wait& step);
   Result<StepResult> act(const Average& step);
@@ -76,6 +77,13 @@ class RunSession {
   Result<StepResult> act(const SweepLevel& step);
   Result<StepResult> act(const Rotate& step);
   Result<StepResult> act(const Prompt& step);
+
+  /// Until `deadline`, recording consecutive averages where there is a segment. `each` is called
+  /// after every tick.
+  Status record_until(drivers::Clock::Instant deadline, const std::string& segment, Seconds window,
+                      const std::function<Status()>& each);
+  /// Where a ramp starts: the target that is held, or the temperature as it is.
+  Result<Celsius> ramp_start();
 
   /// Measures one point and records it; up to kTries windows.
   Result<StepResult> measure(Seconds duration, const PointLabels& labels);

@@ -29,6 +29,11 @@ std::string say(const SetTemperature& s) {
   }
   return {};
 }
+std::string say(const Ramp& s) {
+  return fmt::format("ramp to {} degC at {} degC/h{}{}", s.to.value, s.rate.value,
+                     s.mode == HeatingMode::kNormal ? " in normal mode" : "",
+                     recording(s.segment, s.window));
+}
 std::string say(const SettleTemperature& s) {
   if (s.dwell.count() <= 0) {
     return fmt::format("wait until the temperature is within {} degC of its target (at most {}){}",
@@ -63,14 +68,8 @@ std::string say(const CompensateField& s) {
                      s.tolerance.value);
 }
 std::string say(const SweepLevel& s) {
-  constexpr const char* kAlong[] = {"OX", "OY", "OZ", "north"};
-  std::string across;
-  if (s.other_pair.value != 0.0) {
-    across =
-        fmt::format(" and {} uT {}", s.other_pair.value, s.axis == Axis::kX ? "north" : "along OX");
-  }
-  return fmt::format("set {} uT along {}{}, settle for {}, average for {}{}", s.level.value,
-                     kAlong[static_cast<int>(s.axis)], across, duration_text(s.settle),
+  return fmt::format("set {} uT {}{}, settle for {}, average for {}{}", s.level.value,
+                     along_text(s.axis), across_text(s), duration_text(s.settle),
                      duration_text(s.duration), as(s.segment));
 }
 std::string say(const Rotate& s) {
@@ -84,6 +83,17 @@ std::string say(const Prompt& s) {
 
 std::string sentence(const PlannedStep& step) {
   return std::visit([](const auto& action) { return say(action); }, step.action);
+}
+
+std::string along_text(Axis axis) {
+  constexpr const char* kAlong[] = {"along OX", "along OY", "along OZ", "along north"};
+  return kAlong[static_cast<int>(axis)];
+}
+
+std::string across_text(const SweepLevel& level) {
+  if (level.other_pair.value == 0.0) return {};
+  return fmt::format(" and {} uT {}", level.other_pair.value,
+                     level.axis == Axis::kX ? "north" : "along OX");
 }
 
 std::string duration_text(Seconds duration) {

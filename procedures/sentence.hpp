@@ -13,4 +13,9 @@ std::string sentence(const PlannedStep& step);
 /// "2 h 40 min", "3 min 5 s", "45 s"
 std::string duration_text(Seconds duration);
 
+/// "along OX", "along north"
+std::string along_text(Axis axis);
+/// " and 200 uT north" of what the other pair holds meanwhile; empty for nothing.
+std::string across_text(const SweepLevel& level);
+
 }  // namespace fogbench::procedures

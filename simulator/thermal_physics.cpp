@@ -6,7 +6,6 @@
 #include "config/units.hpp"
 
 namespace fogbench::simulator {
-namespace {}  // namespace
 
 ThermalPhysics::ThermalPhysics(const config::ThermalPlant& plant, double step_s)
     : plant_(plant),
@@ -37,15 +36,15 @@ void ThermalPhysics::advance(const HeaterPower& power) {
   ++steps_;
   const double next_ambient_c = ambient_at(static_cast<double>(steps_) * step_s_);
 
-  const Nodes first = slope_c_per_s(node_c_, ambient_c_, arriving.total_w());
+  const Nodes first = slope_c_per_s(node_c_, ambient_c_, arriving.heat_w());
   Nodes predicted;
   for (std::size_t i = 0; i < 3; ++i) predicted[i] = node_c_[i] + step_s_ * first[i];
-  const Nodes second = slope_c_per_s(predicted, next_ambient_c, arriving.total_w());
+  const Nodes second = slope_c_per_s(predicted, next_ambient_c, arriving.heat_w());
   for (std::size_t i = 0; i < 3; ++i) node_c_[i] += step_s_ * (first[i] + second[i]) / 2.0;
   ambient_c_ = next_ambient_c;
 
   const double rate =
-      slope_c_per_s(node_c_, ambient_c_, arriving.total_w())[1] * config::kSecondsPerHour;
+      slope_c_per_s(node_c_, ambient_c_, arriving.heat_w())[1] * config::kSecondsPerHour;
   carrier_acceleration_c_per_h2_ =
       (rate - carrier_rate_c_per_h_) / (step_s_ / config::kSecondsPerHour);
   carrier_rate_c_per_h_ = rate;

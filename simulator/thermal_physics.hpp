@@ -17,11 +17,13 @@
 
 namespace fogbench::simulator {
 
-/// Electrical power of the two kinds of heaters, W.
+/// Electrical power of the two kinds of heaters, and what a cooler takes off, W.
 struct HeaterPower {
   double boost_w = 0.0;
   double normal_w = 0.0;
+  double cooling_w = 0.0;
   double total_w() const { return boost_w + normal_w; }
+  double heat_w() const { return total_w() - cooling_w; }
 };
 
 class ThermalPhysics {

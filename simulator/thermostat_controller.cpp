@@ -79,20 +79,23 @@ void ThermostatController::control() {
   const double error_c = target_c_ - measured_c;
   if (boosting_ && error_c <= plant_.boost_drop_out.value) boosting_ = false;
   if (boosting_) {
-    power_ = {.boost_w = plant_.boost_maximum.value, .normal_w = 0.0};
+    power_ = {.boost_w = plant_.boost_maximum.value};
     return;
   }
   const double maximum_w = plant_.normal_maximum.value;
+  const double minimum_w = -plant_.cooling_maximum.value;
   const double wanted_w =
       plant_.pid_gain_w_per_k * (error_c - plant_.pid_derivative.count() * slope_c_per_s_) +
       integral_w_;
   const bool pushes_against_clamp =
-      (wanted_w > maximum_w && error_c > 0.0) || (wanted_w < 0.0 && error_c < 0.0);
+      (wanted_w > maximum_w && error_c > 0.0) || (wanted_w < minimum_w && error_c < 0.0);
   if (!pushes_against_clamp) {
     integral_w_ += plant_.pid_gain_w_per_k * error_c * since_cycle_s_ / plant_.pid_integral.count();
-    integral_w_ = std::clamp(integral_w_, 0.0, maximum_w);
+    integral_w_ = std::clamp(integral_w_, minimum_w, maximum_w);
   }
-  power_ = {.boost_w = 0.0, .normal_w = std::clamp(wanted_w, 0.0, maximum_w)};
+  const double power_w = std::clamp(wanted_w, minimum_w, maximum_w);
+  power_ = {
+      .boost_w = 0.0, .normal_w = std::max(power_w, 0.0), .cooling_w = std::max(-power_w, 0.0)};
 }
 
 }  // namespace fogbench::simulator

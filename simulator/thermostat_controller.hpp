@@ -5,8 +5,9 @@
 //
 // In boost mode the 12 W heaters run at full power until the measured temperature comes within
 // `boost_drop_out` of the target, then the normal-mode heater takes over for good. The normal
-// heater follows a PID: derivative on the measurement, output clamped to [0, maximum], and the
-// integral held while the output is at a clamp that the error pushes against (anti-windup).
+// heater follows a PID: derivative on the measurement, output clamped to [0, maximum], or where a
+// chamber cools, [-cooling maximum, maximum], and the integral held while the output is at a clamp
+// that the error pushes against (anti-windup).
 
 #include <array>
 

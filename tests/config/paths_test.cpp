@@ -66,7 +66,7 @@ TEST(Paths, UnknownNameListsTheKnownOnes) {
   EXPECT_THAT(
       message_of(find_config("benches", "simulate")),
       HasSubstr("simulate: no such file, and none of the ready benches (factory, simulated, "
-                "simulated-1khz, simulated-auxiliary)"));
+                "simulated-1khz, simulated-auxiliary, simulated-chamber)"));
 }
 
 TEST(Paths, WhatIsNoFileIsSaidToBeWhatItIs) {

@@ -96,6 +96,46 @@ TEST_P(SchemaFiles, RefuseAnUnknownAndAMissingKey) {
   }
 }
 
+constexpr std::string_view kKeysHeading = "| step | key | what it is | default |\n";
+
+/// Every key of every step, in the words of the schema, as a table of markdown.
+std::string table_of_keys() {
+  std::string table = std::string(kKeysHeading) + "|---|---|---|---|\n";
+  const auto schema = nlohmann::ordered_json::parse(schema_text("procedure"));
+  for (const auto& step : schema["definitions"]["step"]["oneOf"]) {
+    const auto& required = step["required"];
+    for (const auto& [key, value] : step["properties"].items()) {
+      if (key == "step") continue;
+      const bool needed = std::find(required.begin(), required.end(), key) != required.end();
+      const auto set = value.find("default");
+      table += fmt::format("| `{}` | `{}` | {} | {} |\n",
+                           step["properties"]["step"]["const"].get<std::string>(), key,
+                           value["description"].get<std::string>(),
+                           needed               ? "has to be given"
+                           : set == value.end() ? "-"
+                           : set->is_number()   ? fmt::format("{:g}", set->get<double>())
+                                                : set->dump());
+    }
+  }
+  return table;
+}
+
+TEST(ProcedureSchema, TheReadmeOfTheLanguageHasItsWords) {
+  const fs::path file = tests::source_tree() / "procedures/README.md";
+  auto text = read_text_file(file);
+  ASSERT_TRUE(text) << text.error().message;
+  const std::size_t begin = text->find(kKeysHeading);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = text->find("\n\n", begin) + 1;
+  const std::string table = table_of_keys();
+  if (std::getenv("FOGBENCH_UPDATE_SCHEMAS") != nullptr) {
+    text->replace(begin, end - begin, table);
+    std::ofstream(file) << *text;
+  }
+  EXPECT_NE(text->find(table), std::string::npos)
+      << "the first comment of this test says what to do";
+}
+
 INSTANTIATE_TEST_SUITE_P(AllKinds, SchemaFiles, testing::ValuesIn(kSchemaKinds),
                          [](const auto& kind) { return std::string(kind.param); });
 

@@ -12,6 +12,7 @@ namespace fogbench::daemon {
 /// Keys that a bench may have besides those of the ready files, and a neighbourhood with lifts.
 inline constexpr auto kFurtherKeys = R"({
   "limits": {"compensation_maximum_ut": 55, "absence_maximum_s": 30},
+  "thermal": {"boost_c_per_h": 52, "normal_c_per_h": 39, "cooling_c_per_h": 2, "time_constant_s": 3800},
   "estimates": {"room_c": 21, "heating_c_per_h": 45, "cooling_c_per_h": 10, "settling_s": 1400,
                 "compensation_s": 15, "operator_answer_s": 60},
   "simulation": {"magnetic": {"ambient_steps_per_h": 600}}})";

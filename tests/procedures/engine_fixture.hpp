@@ -53,6 +53,9 @@ inline config::Step heat(double target_c, HeatingMode mode = HeatingMode::kNorma
 inline config::Step settle(double timeout_s = 600.0, const std::string& segment = "") {
   return step(config::SettleTemperature{0.2, 20.0, 1.0, timeout_s, segment, 5.0});
 }
+inline config::Step ramp(double to_c, double rate_c_per_h, const std::string& segment = "") {
+  return step(config::Ramp{to_c, rate_c_per_h, HeatingMode::kBoost, false, segment, 5.0});
+}
 inline config::Step average(double duration_s = 10.0, const std::string& segment = "a") {
   return step(config::Average{duration_s, segment});
 }

@@ -139,10 +139,10 @@ TEST(Expand, CallsInlineWithTheirParametersAndInheritTheTest) {
   const ProcedureLoader loader = [](const std::string& name,
                                     const ProcedureConfig&) -> Result<ProcedureConfig> {
     if (name == "called") return called_average();
-    return procedure("middle", {step(config::Call{"called", {}, 0})});
+    return procedure("middle", {step(config::Call{"called", {}, {}, 0})});
   };
-  ProcedureConfig p = procedure("p", {step(config::Call{"called", {{"duration_s", "$d_s"}}, 1}),
-                                      step(config::Call{"middle", {}, 2})});
+  ProcedureConfig p = procedure("p", {step(config::Call{"called", {{"duration_s", "$d_s"}}, {}, 1}),
+                                      step(config::Call{"middle", {}, {}, 2})});
   p.parameters = {{"d_s", 30.0}};
   const auto steps = expand(p, {}, loader);
   ASSERT_TRUE(steps) << steps.error().message;
@@ -157,9 +157,9 @@ TEST(Expand, CallsInlineWithTheirParametersAndInheritTheTest) {
 TEST(Expand, RefusesRecursionAndNamesTheChain) {
   const ProcedureLoader loader = [](const std::string& name,
                                     const ProcedureConfig&) -> Result<ProcedureConfig> {
-    return procedure(name, {step(config::Call{name == "a" ? "b" : "a", {}, 0})});
+    return procedure(name, {step(config::Call{name == "a" ? "b" : "a", {}, {}, 0})});
   };
-  EXPECT_THAT(error_of(procedure("a", {step(config::Call{"b", {}, 0})}), {}, loader),
+  EXPECT_THAT(error_of(procedure("a", {step(config::Call{"b", {}, {}, 0})}), {}, loader),
               HasSubstr("a -> b -> a"));
 }
 
@@ -185,7 +185,7 @@ TEST(Expand, NamesFilePointerAndFaultOfEveryMistake) {
               at_step("levels_ut is empty"));
   EXPECT_THAT(message(config::Sweep{Axis::kX, std::vector<double>{0.0}, 1.0, 1.0, "a/b"}),
               at_step("no '/'"));
-  EXPECT_THAT(message(config::Call{"absent", {}, 0}), at_step("no such file"));
+  EXPECT_THAT(message(config::Call{"absent", {}, {}, 0}), at_step("no such file"));
 }
 
 TEST(Expand, RefusesUnknownAndWrongOverrides) {
@@ -210,6 +210,88 @@ TEST(Expand, LoopsThatLeaveNothingInThePlanEndToo) {
   const auto nothing = step(config::Wait{0.0, 0.0, "", 60.0});
   EXPECT_THAT(error_of(procedure("p", {loop("a", {loop("b", {loop("c", {nothing})})})})),
               HasSubstr("expands to more than 100000 steps"));
+}
+
+std::vector<std::string> paths_of(const std::vector<PlannedStep>& steps) {
+  std::vector<std::string> paths;
+  for (const auto& s : steps) paths.push_back(s.path);
+  return paths;
+}
+
+TEST(Expand, ARangeIsAListOfItsValuesWithParametersBound) {
+  ProcedureConfig p = procedure(
+      "p", {step(config::ForEach{"t_c",
+                                 config::NumberRange{"$low_c", 31.0, 5.0},
+                                 {step(config::SetTemperature{"$t_c", HeatingMode::kBoost})}})});
+  p.parameters = {{"low_c", 21.0}};
+  const auto steps = expand(p, {}, no_other);
+  ASSERT_TRUE(steps) << steps.error().message;
+  ASSERT_EQ(steps->size(), 3U);
+  EXPECT_EQ(std::get<SetTemperature>((*steps)[2].action).target, Celsius{31.0});
+  p.parameters = {{"low_c", 1e9}};
+  EXPECT_THAT(error_of(p), AllOf(HasSubstr("/steps/0"), HasSubstr("values at most")));
+}
+
+TEST(Expand, ARampSettlesWhereItIsToAndCyclesComeAsOftenAsTheyAreTold) {
+  const config::Ramp up{55.0, 120.0, HeatingMode::kBoost, true, "cycle/up", 30.0};
+  ProcedureConfig p = procedure(
+      "p", {step(config::Repeat{"$cycles", {step(up), step(config::Average{60.0, "a"})}})});
+  p.parameters = {{"cycles", 2.0}};
+  const auto steps = expand(p, {}, no_other);
+  ASSERT_TRUE(steps) << steps.error().message;
+  EXPECT_THAT(paths_of(*steps),
+              ElementsAre("1.1.1.1", "1.1.1.2", "1.1.2", "1.2.1.1", "1.2.1.2", "1.2.2"));
+  EXPECT_EQ(std::get<Ramp>((*steps)[0].action).rate, CelsiusPerHour{120.0});
+  const auto& settle = std::get<SettleTemperature>((*steps)[1].action);
+  EXPECT_EQ(settle.segment, "cycle/up");
+  EXPECT_EQ(settle.window, Seconds{30.0});
+  EXPECT_EQ((*steps)[3].phase_says, "turn 2 of 2");
+  EXPECT_NE((*steps)[3].phase, (*steps)[2].phase);
+  EXPECT_EQ((*steps)[3].phase, (*steps)[5].phase);
+  p.parameters = {{"cycles", 1.5}};
+  EXPECT_THAT(error_of(p), HasSubstr("times is 1.5, expected a whole number"));
+  p.parameters = {{"cycles", 0.0}};
+  EXPECT_TRUE(expand(p, {}, no_other)->empty());
+}
+
+TEST(Expand, ACallGivesListsAndPassesParametersOn) {
+  ProcedureConfig sweep = procedure(
+      "sweep", {step(config::Sweep{Axis::kX, "$levels_ut", "$average_s", 1.0, "coil_x"})});
+  sweep.parameters = {{"levels_ut", std::vector<double>{0.0, 50.0, 0.0}}, {"average_s", 60.0}};
+  const ProcedureLoader loader = [&](const std::string&, const ProcedureConfig&) {
+    return Result<ProcedureConfig>(sweep);
+  };
+  const auto levels = [&](const ProcedureConfig& p, const Parameters& overrides = {}) {
+    const auto steps = expand(p, overrides, loader);
+    EXPECT_TRUE(steps) << steps.error().message;
+    return steps ? steps->size() : 0U;
+  };
+  const auto call = [](config::Call made) { return procedure("p", {step(std::move(made))}); };
+  EXPECT_EQ(levels(call({"sweep", {{"levels_ut", std::vector<double>{0.0, 9.0}}}})), 2U);
+  EXPECT_EQ(levels(call({"sweep", {{"levels_ut", config::NumberRange{0.0, 30.0, 10.0}}}})), 4U);
+  const ProcedureConfig passing = call({"sweep", {}, {"levels_ut"}});
+  EXPECT_EQ(levels(passing), 3U) << "the default that it has there";
+  EXPECT_EQ(levels(passing, {{"levels_ut", std::vector<double>{0.0, 1.0, 2.0, 3.0}}}), 4U);
+  EXPECT_THAT(error_of(passing, {{"average_s", 5.0}}, loader),
+              HasSubstr("no parameter \"average_s\" (known: levels_ut)"));
+  EXPECT_THAT(error_of(call({"sweep", {}, {"absent"}}), {}, loader),
+              AllOf(HasSubstr("/steps/0"), HasSubstr("no parameter \"absent\" to pass")));
+  EXPECT_THAT(error_of(call({"sweep", {{"average_s", 1.0}}, {"average_s"}}), {}, loader),
+              HasSubstr("stands in parameters and in pass"));
+}
+
+TEST(Expand, SaysAllThatIsWrongAndEachThingOnce) {
+  ProcedureConfig p =
+      procedure("p", {step(config::Average{"$absent", "a"}),
+                      step(config::Repeat{3.0, {step(config::Average{-1.0, "a"})}}),
+                      step(config::Ramp{31.0, 0.0}), step(config::Average{60.0, "good"})});
+  std::vector<Error> problems;
+  const auto steps = expand(p, {}, no_other, problems);
+  ASSERT_EQ(problems.size(), 3U);
+  EXPECT_THAT(problems[0].message, HasSubstr("no parameter \"absent\""));
+  EXPECT_THAT(problems[1].message, HasSubstr("duration_s is -1"));
+  EXPECT_THAT(problems[2].message, HasSubstr("rate_c_per_h is 0"));
+  EXPECT_THAT(paths_of(steps), ElementsAre("4"));
 }
 
 }  // namespace

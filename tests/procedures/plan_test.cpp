@@ -5,6 +5,8 @@
 
 #include "procedures/check_limits.hpp"
 #include "procedures/expand.hpp"
+#include "procedures/phases.hpp"
+#include "procedures/planned_points.hpp"
 #include "procedures/sentence.hpp"
 #include "tests/procedures/procedure_builder.hpp"
 
@@ -155,6 +157,93 @@ TEST(DurationText, HasNoMoreUnitsThanNeeded) {
   EXPECT_EQ(duration_text(Seconds{60.0}), "1 min");
   EXPECT_EQ(duration_text(Seconds{3665.0}), "1 h 1 min 5 s");
   EXPECT_EQ(duration_text(Seconds{1e300}), "1e+300 s");
+}
+
+/// As the simulated bench: 12 W and 9 W into 830 J/K, which lose 0.22 W/K.
+config::BenchConfig bench_of_known_reach() {
+  config::BenchConfig bench;
+  bench.thermal = config::reach_of(config::ThermalPlant{});
+  return bench;
+}
+
+config::Step ramp_to(double to_c, double rate_c_per_h) {
+  return step(config::Ramp{to_c, rate_c_per_h, HeatingMode::kBoost, false, "ramp", 60.0});
+}
+
+TEST(Plan, RefusesATemperatureThatHeatersAndRoomCannotHold) {
+  const config::BenchConfig bench = bench_of_known_reach();
+  EXPECT_THAT(refusal({heat_to(20.0)}, ErrorCode::kLimit, bench),
+              AllOf(HasSubstr("p.json: /steps/0: target_c is 20 degC in a room of 21 degC"),
+                    HasSubstr("nothing that cools")));
+  config::BenchConfig weak = bench;
+  weak.thermal->normal = CelsiusPerHour{20.0};
+  EXPECT_THAT(refusal({heat_to(50.0)}, ErrorCode::kLimit, weak),
+              HasSubstr("the bench's normal heater holds 42.0 degC at most"));
+  config::BenchConfig cooled = bench;
+  cooled.thermal->cooling = CelsiusPerHour{4.0};
+  EXPECT_TRUE(plan_of({heat_to(20.0)}, cooled));
+  EXPECT_THAT(refusal({heat_to(16.0)}, ErrorCode::kLimit, cooled), HasSubstr("comes down to 16.8"));
+  EXPECT_TRUE(plan_of({heat_to(20.0)})) << "nobody has said what that bench can";
+}
+
+TEST(Plan, RefusesARampThatHeatersOrRoomCannotFollowAndNamesTheNearest) {
+  const config::BenchConfig bench = bench_of_known_reach();
+  // 52.05 - 34/1.048 = 19.6 degC/h are left at 55 degC.
+  EXPECT_THAT(refusal({ramp_to(55.0, 30.0)}, ErrorCode::kLimit, bench),
+              AllOf(HasSubstr("/steps/0: a ramp from 21 to 55 degC at 30 degC/h"),
+                    HasSubstr("as far as 44.1 degC"), HasSubstr("goes all the way is 19 degC/h")));
+  EXPECT_TRUE(plan_of({ramp_to(55.0, 19.0)}, bench));
+  EXPECT_THAT(refusal({ramp_to(55.0, 120.0)}, ErrorCode::kLimit, bench),
+              HasSubstr("cannot follow at all"));
+  EXPECT_THAT(refusal({ramp_to(50.0, 20.0), ramp_to(25.0, 20.0)}, ErrorCode::kLimit, bench),
+              AllOf(HasSubstr("/steps/1: a ramp from 50 to 25 degC"), HasSubstr("without a cooler"),
+                    HasSubstr("as far as 42.0 degC"), HasSubstr("goes all the way is 3.8 degC/h")));
+  const auto unknown = plan_of({ramp_to(55.0, 120.0)});
+  ASSERT_TRUE(unknown);
+  EXPECT_THAT(unknown->limits_met, Contains(HasSubstr("has no \"thermal\"")));
+}
+
+TEST(Plan, ARampTakesWhatItsRateSaysAndGivesItsPoints) {
+  const auto plan = plan_of({ramp_to(31.0, 20.0), ramp_to(27.0, 5.0)}, bench_of_known_reach());
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_DOUBLE_EQ(plan->steps[0].estimate.count(), 1800.0);
+  EXPECT_DOUBLE_EQ(plan->steps[1].estimate.count(), 2880.0);
+  EXPECT_EQ(plan->steps[0].says,
+            "ramp to 31 degC at 20 degC/h, recording averages of 1 min as ramp");
+  EXPECT_EQ(planned_points(*plan), 30U + 48U);
+  EXPECT_THAT(plan->limits_met,
+              Contains(HasSubstr("ramps up: 20 degC/h, the bench can 42.5 degC/h at 31")));
+}
+
+TEST(Plan, PhasesSayWhatHowLongAndHowManyPoints) {
+  const auto plan = plan_of(
+      {step(config::CompensateField{0.2}), swept(Axis::kX, {0.0, 50.0, 0.0}),
+       step(config::Repeat{
+           2.0, {ramp_to(31.0, 20.0), step(config::Wait{600.0, 0.0, "cycle/high", 60.0})}})});
+  ASSERT_TRUE(plan) << plan.error().message;
+  const auto phases = phases_of(*plan);
+  ASSERT_EQ(phases.size(), 4U);
+  EXPECT_EQ(phases[1].says, "sweep along OX: 3 levels, 0 to 50 uT, 3 min each as coil");
+  EXPECT_EQ(phases[1].points, 3U);
+  EXPECT_EQ(phases[2].says, "turn 1 of 2: ramp, cycle/high");
+  EXPECT_EQ(phases[2].points, 30U + 10U);
+  EXPECT_DOUBLE_EQ(phases[2].estimate.count(), 2400.0);
+  EXPECT_DOUBLE_EQ(phases[3].starts_after.count(),
+                   phases[2].starts_after.count() + phases[2].estimate.count());
+  EXPECT_EQ(phases[3].says, "turn 2 of 2: ramp, cycle/high");
+}
+
+TEST(Plan, EverythingThatKeepsItFromABenchIsSaidAtOnce) {
+  const auto problems =
+      check_procedure(procedure("p", {heat_to(20.0), heat_to(70.0), swept(Axis::kX, {0.0, 400.0}),
+                                      step(config::Average{"$absent", ""})}),
+                      bench_of_known_reach());
+  std::string said;
+  for (const Error& problem : problems) said += problem.message + "\n";
+  for (const char* what : {"/steps/0: target_c is 20", "/steps/1: target_c is 70",
+                           "/steps/2: a sweep without", "/steps/3: no parameter"}) {
+    EXPECT_THAT(said, HasSubstr(what));
+  }
 }
 
 }  // namespace

@@ -43,14 +43,19 @@ std::map<std::string, int> points_of(const Plan& plan, int test = 1) {
   return points;
 }
 
-TEST(ReadyProcedures, AllCanBePlannedOnEveryReadyBench) {
+TEST(ReadyProcedures, AllCanBePlannedOnEveryReadyBenchButCyclesThatTakeACooler) {
   int plans = 0;
   for (const auto& procedure : std::filesystem::directory_iterator(kConfig / "procedures")) {
     for (const auto& file : std::filesystem::directory_iterator(kConfig / "benches")) {
       const auto plan =
           ready_plan(procedure.path().stem().string(), {}, file.path().stem().string());
-      EXPECT_TRUE(plan) << file.path() << ": " << plan.error().message;
       ++plans;
+      if (procedure.path().stem() == "temperature-cycles" &&
+          file.path().stem() != "simulated-chamber") {
+        EXPECT_FALSE(plan) << file.path() << " cools";
+        continue;
+      }
+      EXPECT_TRUE(plan) << file.path() << ": " << plan.error().message;
     }
   }
   EXPECT_GE(plans, 4 * 3);

@@ -106,5 +106,36 @@ TEST_F(ResumePlanTest, ATargetThatWasSetWithinABlockIsNotForgotten) {
   EXPECT_EQ(first_step_left(plan, 1), 0U);
 }
 
+TEST(ResumePlan, ARampBeginsAnewFromWhereTheOneBeforeItEnded) {
+  Plan plan;
+  const auto add = [&plan](auto action) {
+    PlannedStep step;
+    step.action = action;
+    step.path = std::to_string(plan.steps.size() + 1);
+    plan.steps.push_back(step);
+  };
+  const auto cycle = [&] {
+    add(Ramp{Celsius{55.0}, CelsiusPerHour{120.0}, HeatingMode::kBoost, "up", Seconds{30.0}});
+    add(Wait{Seconds{600.0}, Seconds{0.0}, "high", Seconds{60.0}});
+    add(Ramp{Celsius{25.0}, CelsiusPerHour{120.0}, HeatingMode::kBoost, "down", Seconds{30.0}});
+    add(Wait{Seconds{600.0}, Seconds{0.0}, "low", Seconds{60.0}});
+  };
+  cycle();
+  cycle();
+  // In the second ramp down, and in the wait that follows it.
+  for (const std::size_t at : {6U, 7U}) {
+    const auto resumed = resume_plan(plan, at, {});
+    ASSERT_TRUE(resumed) << resumed.error().message;
+    EXPECT_EQ(resumed->first, 6U);
+    std::vector<std::string> paths;
+    for (const auto& step : resumed->plan.steps) paths.push_back(step.path);
+    EXPECT_THAT(paths, ElementsAre("again 5.1", "again 5.2", "again 6", "7", "8"));
+    EXPECT_EQ(std::get<SetTemperature>(resumed->plan.steps[0].action).target, Celsius{55.0});
+    EXPECT_EQ(std::get<Wait>(resumed->plan.steps[2].action).segment, "");
+    EXPECT_EQ(std::get<Ramp>(resumed->plan.steps[3].action).segment, "down");
+  }
+  EXPECT_EQ(first_step_left(plan, 0), 0U);
+}
+
 }  // namespace
 }  // namespace fogbench::procedures

@@ -387,5 +387,56 @@ TEST(RunEngine, CorrectsTheRemainingTimeAsSettlingEnds) {
   EXPECT_LT(at_second.front().remaining.count(), 0.1 * plan.steps[3].estimate.count());
 }
 
+TEST(RunEngine, ARampMovesTheTargetAtItsRateAndHoldsItsEnd) {
+  Rig rig;
+  const auto summary =
+      rig.summary_of({ramp(22.0, 72.0, "up"), wait(5.0), ramp(21.5, 36.0, "down")});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted) << summary.end.reason;
+  // 50 s each way, in windows of 5 s.
+  ASSERT_EQ(rig.log.points.size(), 20U);
+  const auto rise_c = [&](std::size_t first, std::size_t last) {
+    return rig.log.points[last].temperature_c - rig.log.points[first].temperature_c;
+  };
+  EXPECT_NEAR(rise_c(0, 9), 45.0 * 72.0 / 3600.0, 0.15);
+  EXPECT_NEAR(rise_c(2, 7), 25.0 * 72.0 / 3600.0, 0.15) << "at one rate";
+  EXPECT_NEAR(rise_c(10, 19), -45.0 * 36.0 / 3600.0, 0.15);
+  EXPECT_NEAR(rig.log.points[9].target_c, 22.0, 0.1);
+  const auto evidence = nlohmann::json::parse(rig.log.steps[0].evidence);
+  EXPECT_NEAR(evidence["from_c"].get<double>(), 21.0, 1e-9);
+  EXPECT_NEAR(evidence["temperature_c"].get<double>(), 22.0, 0.2);
+  EXPECT_LT(evidence["most_behind_c"].get<double>(), 0.2);
+  EXPECT_FALSE(rig.log.has_event("behind"));
+}
+
+TEST(RunEngine, ARampStartsFromTheTargetThatIsHeldAndElseFromTheTemperature) {
+  Rig held;
+  held.plant.speed_c_per_s = 0.05;
+  held.summary_of({heat(22.0), wait(17.0), ramp(23.0, 72.0)});
+  EXPECT_EQ(nlohmann::json::parse(held.log.steps[2].evidence)["from_c"], 22.0);
+  Rig away;
+  away.plant.speed_c_per_s = 0.05;
+  away.summary_of({heat(31.0), wait(19.0), ramp(23.0, 72.0)});
+  EXPECT_NEAR(nlohmann::json::parse(away.log.steps[2].evidence)["from_c"].get<double>(), 22.0, 0.2);
+}
+
+TEST(RunEngine, ARampThatTheTemperatureDoesNotFollowIsOnRecordAsOne) {
+  Rig rig;
+  rig.plant.speed_c_per_s = 0.01;
+  const auto summary = rig.summary_of({ramp(26.0, 144.0)});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted);
+  EXPECT_TRUE(rig.log.has_event("the ramp to 26 degC has ended, the temperature is 3."));
+}
+
+TEST(RunEngine, ARampIsAbortedAtOnceAndLeavesTheHeatersOff) {
+  Rig rig;
+  rig.engine.on_progress([&](const Progress& now) {
+    if (now.elapsed > Seconds{20.0}) rig.engine.request_abort();
+  });
+  const auto summary = rig.summary_of({ramp(31.0, 36.0)});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kAborted);
+  EXPECT_TRUE(rig.plant.safe());
+  EXPECT_LT(drivers::to_seconds(rig.plant.clock.now().time_since_epoch()), 30.0);
+}
+
 }  // namespace
 }  // namespace fogbench::procedures

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/procedures/engine_fixture.hpp"
 
 namespace fogbench::procedures {
@@ -210,6 +212,17 @@ TEST(Unplugged, ATurntableThatGoesWhileItTurnsIsToldAgain) {
   EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted) << summary.end.reason;
   EXPECT_EQ(rig.plant.azimuth_deg, 90.0);
   EXPECT_TRUE(rig.log.has_event("step 2 begins again"));
+}
+
+TEST(Unplugged, ARampWhoseThermostatIsGoneBeginsAgainFromWhereItIs) {
+  Rig rig;
+  const Unplugged pulled(rig, "thermostat", 10.0, [&] { return rig.plant.target_c > 21.5; });
+  const auto summary = rig.summary_of({ramp(22.0, 72.0, "up")});
+  EXPECT_EQ(summary.end.outcome, RunOutcome::kCompleted) << summary.end.reason;
+  EXPECT_GT(pulled.pulled_at_s(), 0.0);
+  ASSERT_EQ(rig.log.steps.size(), 2U) << "the ramp, and the ramp again";
+  EXPECT_GT(nlohmann::json::parse(rig.log.steps[1].evidence)["from_c"].get<double>(), 21.3);
+  EXPECT_NEAR(rig.plant.target_c, 22.0, 1e-9);
 }
 
 }  // namespace

@@ -214,5 +214,23 @@ TEST(ThermostatController, ASensorLagsARampByItsTimeConstant) {
               rate_c_per_s * plant.sensor_lag.count(), 0.0015);
 }
 
+TEST(ThermostatController, AChambersCoolerHoldsATemperatureBelowTheRoom) {
+  config::ThermalPlant plant = quiet_plant();
+  plant.cooling_maximum = config::Watt{5.0};
+  ThermalPhysics thermal(plant, 0.1);
+  ThermostatController controller(plant, 0.1, 3);
+  controller.set_target(config::Celsius{15.0});
+  controller.set_mode(config::HeatingMode::kNormal);
+  for (int i = 0; i < 200000; ++i) {
+    thermal.advance(controller.power());
+    controller.advance(thermal);
+  }
+  EXPECT_NEAR(thermal.carrier_c(), 15.0, 0.05);
+  EXPECT_NEAR(controller.power().cooling_w, 6.0 * plant.carrier_ambient_w_per_k, 0.1);
+  EXPECT_EQ(controller.power().total_w(), 0.0) << "no heater is on";
+  controller.set_mode(config::HeatingMode::kOff);
+  EXPECT_EQ(controller.power().cooling_w, 0.0);
+}
+
 }  // namespace
 }  // namespace fogbench::simulator

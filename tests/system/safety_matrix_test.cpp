@@ -120,6 +120,7 @@ const std::vector<Situation>& situations() {
       {"set_temperature",
        {step(config::SetTemperature{40.0, HeatingMode::kNormal}), step(config::Wait{3.0})},
        10ms},
+      {"ramp", {step(config::Ramp{21.3, 40.0}), step(config::Wait{3.0})}},
       {"settle_temperature", {step(config::SettleTemperature{40.0, 5.0, 1e6, 15.0})}},
       {"wait", {step(config::Wait{5.0})}},
       {"average", {step(config::Average{5.0, "a"})}},
