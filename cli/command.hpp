@@ -36,6 +36,7 @@ void add_command(CLI::App& app, Action& action, const std::string& name,
 
 // The commands, in the order in which --help lists them. Each is defined in its own file.
 void add_plan(CLI::App& app, Action& action);
+void add_procedure(CLI::App& app, Action& action);
 void add_dry_run(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 void add_runs(CLI::App& app, Action& action);

@@ -48,6 +48,7 @@ fogbench::daemon::ManualText manual_text() {
 
 void add_commands(CLI::App& app, fogbench::cli::Action& action) {
   fogbench::cli::add_plan(app, action);
+  fogbench::cli::add_procedure(app, action);
   fogbench::cli::add_dry_run(app, action);
   fogbench::cli::add_simulate(app, action);
   fogbench::cli::add_runs(app, action);

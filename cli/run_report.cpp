@@ -109,6 +109,24 @@ std::string results_text_of(const acceptance::RunResults& results, bool every_le
   return tables + "\nStandard errors are those of white noise within the averages: lower bounds.\n";
 }
 
+/// What the run's bench file, or its thermostat's device file, says of the sensors' lag, s; 0 when
+/// neither does. Both texts are in the record.
+double sensor_lag_s(const std::string& bench_json) {
+  double of_device = 0.0;
+  const nlohmann::json texts = nlohmann::json::parse(bench_json, nullptr, false);
+  for (const nlohmann::json& text : texts) {
+    if (!text.is_string()) continue;
+    const auto file = nlohmann::json::parse(text.get_ref<const std::string&>(), nullptr, false);
+    if (!file.is_object()) continue;
+    const nlohmann::json& holder = file.contains("thermostat") ? file["thermostat"] : file;
+    const auto lag = holder.is_object() ? holder.find("sensor_lag_s") : holder.end();
+    if (lag == holder.end() || !lag->is_number()) continue;
+    if (&holder != &file) return lag->get<double>();
+    of_device = lag->get<double>();
+  }
+  return of_device;
+}
+
 ordered_json to_json(const record::StoredRun& run) {
   const procedures::RunHeader& header = run.header;
   ordered_json json{{"run", run.run},
@@ -123,6 +141,7 @@ ordered_json to_json(const record::StoredRun& run) {
                     {"points", run.points},
                     {"points_void", run.points_void},
                     {"frame_rate_hz", header.frame_rate_hz},
+                    {"sensor_lag_s", sensor_lag_s(header.bench_json)},
                     {"reference_rate_deg_per_h", header.reference_rate_deg_per_h},
                     {"frames_stored", run.frames_stored}};
   if (header.continues) json["takes_up"] = header.continues->run;
@@ -216,6 +235,9 @@ std::string heading(const record::StoredRun& run) {
                      ? fmt::format("{}", run.points)
                      : fmt::format("{}, {} of them void", run.points, run.points_void));
   line("frames", fmt::format("{} stored, {:g} Hz", run.frames_stored, header.frame_rate_hz));
+  if (const double lag_s = sensor_lag_s(header.bench_json); lag_s > 0.0) {
+    line("sensor lag", fmt::format("{:g} s, which the points' temperatures are freed of", lag_s));
+  }
   if (run.end) {
     const drivers::StreamStatistics& stream = run.end->stream;
     line("stream",
