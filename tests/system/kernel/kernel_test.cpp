@@ -49,7 +49,7 @@ class RealKernel : public testing::Test {
     std::filesystem::create_directories(kResults);
     const auto booted = support::Process({kScripts / "boot", kKernel, kResults, kScripts / "guest",
                                           tests::build_tree()})
-                            .wait(280s);
+                            .wait(400s);
     std::ofstream(kFolder / "console.log") << booted.out << booted.err;
     ASSERT_NE(booted.out.find("guest: status 0\r\n"), std::string::npos)
         << "The guest did not come to its end. The last that it said:\n"
@@ -86,7 +86,7 @@ TEST_F(RealKernel, HasTheDriversOfUsbInstrumentsAndSeesThemExported) {
               AllOf(HasSubstr("usbtmc\n"), HasSubstr("usbhid\n"), HasSubstr("hid-generic\n")));
   // As Debian's usbip prints them.
   EXPECT_THAT(result("exported"),
-              AllOf(HasSubstr("1-1: "), HasSubstr("1-2: "), HasSubstr("1-3: "),
+              AllOf(HasSubstr("1-1: "), HasSubstr("1-2: "), HasSubstr("1-3: "), HasSubstr("1-4: "),
                     HasSubstr("Test and Measurement / TMC"), HasSubstr("Human Interface Device")));
 }
 
@@ -132,6 +132,36 @@ TEST_F(RealKernel, PyvisaSpeaksToASupply) {
             "set 0.25\n"
             "refused -222,\"Data out of range\"\n"
             "zero 0.0\n");
+}
+
+TEST_F(RealKernel, AnAuxiliarySensorThatIsUnpluggedCostsItsOwnChannelOnly) {
+  EXPECT_EQ(result("sensors.status"), "0\n") << result("sensors.log");
+  const auto run = this->run("sensors");
+  EXPECT_EQ(run["outcome"], "completed");
+  EXPECT_THAT(events(run), AllOf(HasSubstr("light_meter: HID device"), HasSubstr("is gone"),
+                                 HasSubstr("light_meter: answers again after")));
+  const auto exported = support::run({tests::build_tree() / "fogbench", "export", "1", "--store",
+                                      kResults / "sensors.db", "-o", kResults / "sensors.csv"});
+  ASSERT_EQ(exported.status, 0) << exported.err;
+  std::istringstream rows(result("sensors.csv"));
+  std::string header, row;
+  std::getline(rows, header);
+  EXPECT_THAT(header,
+              testing::EndsWith("humidity_percent,illuminance_lx,pressure_hpa,room_c,supply_v"));
+  std::size_t with = 0, without = 0;
+  while (std::getline(rows, row)) {
+    // From the end: supply_v, room_c, pressure_hpa, illuminance_lx, humidity_percent.
+    std::vector<std::string> cells(5);
+    for (std::string& cell : cells) {
+      const std::size_t comma = row.rfind(',');
+      cell = row.substr(comma + 1);
+      row.resize(comma);
+    }
+    for (const std::size_t other : {0U, 1U, 2U, 4U}) EXPECT_NE(cells[other], "") << other;
+    ++(cells[3].empty() ? without : with);
+  }
+  EXPECT_GE(with, 2U);
+  EXPECT_GE(without, 1U);
 }
 
 TEST_F(RealKernel, ASweepIsInterruptedByAPulledPlugAndBeginsAnew) {
