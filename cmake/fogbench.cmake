@@ -38,6 +38,20 @@ function(fogbench_text folder file constant)
   target_include_directories(fogbench_${folder} PRIVATE ${PROJECT_BINARY_DIR}/made)
 endfunction()
 
+# fogbench_families(<folder>) makes the list of a room's effects, <folder>/effects/families.hpp: each
+# file of <folder>/effects/catalogue/ defines those of one family, in a function of its own name.
+function(fogbench_families folder)
+  file(GLOB families RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS effects/catalogue/*.cpp)
+  foreach(file IN LISTS families)
+    cmake_path(GET file STEM family)
+    string(APPEND FAMILY_DECLARATIONS "Family ${family}();\n")
+    string(APPEND FAMILY_NAMES "    ${family},\n")
+  endforeach()
+  configure_file(effects/families.hpp.in
+    ${PROJECT_BINARY_DIR}/made/${folder}/effects/families.hpp @ONLY)
+  target_include_directories(fogbench_${folder} PRIVATE ${PROJECT_BINARY_DIR}/made)
+endfunction()
+
 # fogbench_test(<name> SOURCES a_test.cpp ... LINKS targets... LABEL unit|system|slow COST seconds
 # THREADS) declares one GoogleTest executable whose cases ctest runs one by one. THREADS, for what
 # runs several, makes the label end in `_threads`. The target `quick_tests` builds what is not slow,

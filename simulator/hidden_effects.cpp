@@ -21,13 +21,12 @@ Error unknown(const std::string& where, std::string_view what, const std::string
                fmt::format("{}: unknown {} \"{}\"; {}", where, what, name, hint)};
 }
 
-Result<const EffectEntry*> find(const std::string& where, const std::string& id) {
-  std::vector<std::string_view> known;
+Error unknown_effect(const std::string& where, const std::string& name) {
+  std::vector<std::string> names;
   for (const EffectEntry& entry : all_effects()) {
-    if (entry.id == id) return &entry;
-    known.push_back(entry.id);
+    names.push_back(entry.of_a_channel ? entry.id + "(CHANNEL)" : entry.id);
   }
-  return unknown(where, "effect", id, known);
+  return unknown(where, "effect", name, {names.begin(), names.end()});
 }
 
 Status check_domain(const std::string& where, const EffectParameter& parameter, double value) {
@@ -45,16 +44,12 @@ Status check_domain(const std::string& where, const EffectParameter& parameter, 
 }  // namespace
 
 Status HiddenEffects::add(const config::HiddenEffect& hidden, const std::string& where) {
-  if (auto channel = sensitive_to(hidden.effect)) {
-    terms_.push_back({hidden.amplitude, false, sensitivity_to(*std::move(channel))});
-    return {};
-  }
-  const Result<const EffectEntry*> found = find(where, hidden.effect);
-  if (!found) return found.error();
-  const EffectEntry& entry = **found;
+  const std::optional<NamedEffect> found = find_effect(hidden.effect);
+  if (!found) return unknown_effect(where, hidden.effect);
+  const EffectEntry& entry = *found->entry;
 
   std::vector<std::string_view> known;
-  std::vector<double> inner;
+  Given values{.channel = found->channel};
   for (const EffectParameter& parameter : entry.parameters) {
     known.push_back(parameter.name);
     const auto given = hidden.parameters.find(parameter.name);
@@ -63,11 +58,11 @@ Status HiddenEffects::add(const config::HiddenEffect& hidden, const std::string&
         return Error{ErrorCode::kBadInput, fmt::format("{}: {} needs the parameter \"{}\"", where,
                                                        entry.id, parameter.name)};
       }
-      inner.push_back(0.0);
+      values.inner.push_back(0.0);
       continue;
     }
     if (Status s = check_domain(where, parameter, given->second); !s) return s;
-    inner.push_back(given->second);
+    values.inner.push_back(given->second);
   }
   for (const auto& [name, value] : hidden.parameters) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
@@ -78,7 +73,8 @@ Status HiddenEffects::add(const config::HiddenEffect& hidden, const std::string&
     return Error{ErrorCode::kBadInput,
                  fmt::format("{}: the amplitude of {} is not a finite number", where, entry.id)};
   }
-  terms_.push_back({hidden.amplitude, entry.through_shield, entry.make(inner)});
+  terms_.push_back({hidden.amplitude, entry.through_shield, entry.make(values)});
+  if (!values.channel.empty()) channels_.push_back({where, hidden.effect, values.channel});
   return {};
 }
 

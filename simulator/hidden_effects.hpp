@@ -2,6 +2,7 @@
 // The sum of everything that the scenario makes the gyro do besides measuring: its published terms,
 // what hides in it, and the state of its shield.
 
+#include <string>
 #include <vector>
 
 #include "config/result.hpp"
@@ -16,6 +17,12 @@ class HiddenEffects {
   /// parameter, and for one outside its domain.
   static Result<HiddenEffects> create(const config::ScenarioConfig& scenario);
 
+  /// An effect that acts on the channel of an auxiliary sensor, which the bench must have.
+  struct OnChannel {
+    std::string where, effect, channel;
+  };
+  const std::vector<OnChannel>& on_channels() const { return channels_; }
+
   /// The rate that the effects add in this step, deg/h. Call once a step.
   double advance(const TrueState& state);
 
@@ -29,6 +36,7 @@ class HiddenEffects {
   Status add(const config::HiddenEffect& hidden, const std::string& where);
 
   std::vector<Term> terms_;
+  std::vector<OnChannel> channels_;
   std::vector<config::MagneticScaleChange> scale_changes_;  ///< by time
 };
 

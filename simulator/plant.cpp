@@ -24,15 +24,14 @@ Result<std::unique_ptr<Plant>> Plant::create(const config::BenchConfig& bench,
   Result<HiddenEffects> effects = HiddenEffects::create(scenario);
   if (!effects) return effects.error();
   const auto channels = config::auxiliary_channels(bench);
-  for (const config::HiddenEffect& hidden : scenario.hidden) {
-    const auto channel = sensitive_to(hidden.effect);
-    if (!channel || std::any_of(channels.begin(), channels.end(),
-                                [&](const auto& known) { return known.name == *channel; })) {
+  for (const HiddenEffects::OnChannel& acts : effects->on_channels()) {
+    if (std::any_of(channels.begin(), channels.end(),
+                    [&](const auto& known) { return known.name == acts.channel; })) {
       continue;
     }
     return Error{ErrorCode::kBadInput,
-                 fmt::format("scenario: {}: no auxiliary sensor of the bench {} measures it",
-                             hidden.effect, bench.name)};
+                 fmt::format("{}: {}: no auxiliary sensor of the bench {} measures {}", acts.where,
+                             acts.effect, bench.name, acts.channel)};
   }
   return std::unique_ptr<Plant>(
       new Plant(bench, *std::move(effects), scenario.reference_temperature.value, seed, clock));

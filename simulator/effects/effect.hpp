@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +31,11 @@ struct TrueState {
   std::map<std::string, double, std::less<>> auxiliary;  ///< less their means, in their units
 
   double above_reference_c() const { return temperature_c - reference_temperature_c; }
+  /// By an auxiliary sensor, less its mean; 0 for a channel that the bench does not have.
+  double measured(std::string_view channel) const {
+    const auto found = auxiliary.find(channel);
+    return found == auxiliary.end() ? 0.0 : found->second;
+  }
 };
 
 /// Called once a step, in order; may remember.
@@ -46,28 +50,35 @@ struct EffectParameter {
   bool required = true;  ///< else 0 when absent
 };
 
-struct EffectEntry {
-  std::string id;
-  std::vector<EffectParameter> parameters;
-  /// `inner` in the order of `parameters`.
-  std::function<Regressor(std::span<const double> inner)> make;
-  /// Through the shield: it scales with the shield's state (a scenario's magnetic_scale).
-  bool through_shield = false;
+/// What a scenario says of an effect beside its amplitude.
+struct Given {
+  std::vector<double> inner;  ///< in the order of the effect's parameters
+  std::string channel;        ///< of "effect(channel)"; else empty
 };
 
-// One function per family, each in a file of its own.
-void add_drift_effects(std::vector<EffectEntry>& entries);
-void add_temperature_effects(std::vector<EffectEntry>& entries);
-void add_magnetic_effects(std::vector<EffectEntry>& entries);
-void add_bench_effects(std::vector<EffectEntry>& entries);
+/// All that anybody asks of an effect. One effect, or one family of the three axes, is one file in
+/// simulator/effects/catalogue/; the build makes the list of these files.
+struct EffectEntry {
+  std::string id;
+  std::vector<EffectParameter> parameters = {};
+  std::function<Regressor(const Given&)> make;
+  /// Through the shield: it scales with the shield's state (a scenario's magnetic_scale).
+  bool through_shield = false;
+  /// It acts on the channel of an auxiliary sensor that is named with it: "sensitivity(supply_v)".
+  bool of_a_channel = false;
+  /// It acts on the channel of an auxiliary sensor, always on this one.
+  std::string channel = {};
+};
 
-/// The channel of "sensitivity(pressure_hpa)"; nothing for another effect's name.
-std::optional<std::string> sensitive_to(std::string_view id);
-/// The rate follows a quantity that an auxiliary sensor of the bench measures, less its mean; the
-/// amplitude is in deg/h per unit of the channel.
-Regressor sensitivity_to(std::string channel);
-
-/// All effects that the simulator can hide.
+/// All effects that the simulator can hide, in the order of their files.
 const std::vector<EffectEntry>& all_effects();
+
+/// An effect by the name that a scenario gives it.
+struct NamedEffect {
+  const EffectEntry* entry = nullptr;
+  std::string channel;  ///< of an auxiliary sensor that it acts on; empty: none
+};
+/// "bias", "sensitivity(supply_v)"; nothing when there is none of that name.
+std::optional<NamedEffect> find_effect(std::string_view name);
 
 }  // namespace fogbench::simulator

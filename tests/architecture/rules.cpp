@@ -145,7 +145,7 @@ Violations sources_without_header(const Tree& tree) {
     const std::string header = file.path.substr(0, file.path.size() - 3) + "hpp";
     const std::string name = std::filesystem::path(file.path).stem();
     const bool is_family = file.path.starts_with("model/effects/catalogue/") ||
-                           file.path.starts_with("simulator/effects/");
+                           file.path.starts_with("simulator/effects/catalogue/");
     const bool is_command = file.folder() == "cli" && commands != nullptr &&
                             commands->code.find("void add_" + name + "(") != std::string::npos;
     if (name == "main" || is_family || is_command || find(tree, header) != nullptr) continue;

@@ -41,7 +41,7 @@ Violations unlisted_sources(const Tree& tree);
 Violations homeless_sources(const Tree& tree);
 /// A file is split by subject, never by length: beside every source of a room stands the header of
 /// its name, which says what it is about. Without one are main.cpp, one family of effects (the list
-/// of all is made by the build, or stands in simulator/effects/effect.hpp), and a command that
+/// of all is made by the build), and a command that
 /// cli/command.hpp declares, so that to add one takes one line.
 Violations sources_without_header(const Tree& tree);
 /// Rooms ask the Clock for time (drivers/clock.* alone asks the machine), and draw random numbers

@@ -107,10 +107,11 @@ TEST(SourcesWithoutHeader, FindsAPartOfAnotherFile) {
 }
 
 TEST(SourcesWithoutHeader, AcceptsProgramsFamiliesOfEffectsAndTests) {
-  EXPECT_THAT(sources_without_header(
-                  {file("daemon/main.cpp", ""), file("model/effects/catalogue/bias.cpp", ""),
-                   file("simulator/effects/drift.cpp", ""), file("tests/cli/a_test.cpp", "")}),
-              IsEmpty());
+  EXPECT_THAT(
+      sources_without_header(
+          {file("daemon/main.cpp", ""), file("model/effects/catalogue/bias.cpp", ""),
+           file("simulator/effects/catalogue/drift.cpp", ""), file("tests/cli/a_test.cpp", "")}),
+      IsEmpty());
 }
 
 TEST(MachineTimeOrChance, FindsTheMachinesClockAndUnseededChance) {

@@ -143,8 +143,10 @@ TEST_F(AuxiliaryTest, AnEffectOfWhatNobodyMeasuresCannotBeSimulated) {
   SimulatedOperator person;
   const auto session = Session::open(setup_, 3, record_, Speed::kMaximum, person);
   ASSERT_FALSE(session);
-  EXPECT_THAT(session.error().message,
-              HasSubstr("no auxiliary sensor of the bench simulated-auxiliary measures it"));
+  EXPECT_THAT(
+      session.error().message,
+      HasSubstr("scenario: /hidden/0: sensitivity(noise_db): no auxiliary sensor of the bench "
+                "simulated-auxiliary measures noise_db"));
 }
 
 }  // namespace

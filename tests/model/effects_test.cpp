@@ -70,7 +70,7 @@ TEST(Catalogue, EveryEffectIsDescribedOnceAndInFull) {
     }
     EXPECT_EQ(find_effect(info.id), effect);
   }
-  EXPECT_EQ(ids.size(), 43u);
+  EXPECT_GE(ids.size(), 43u);
 }
 
 TEST(Catalogue, NamesTheNearestOfAnUnknownEffect) {

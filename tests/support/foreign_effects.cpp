@@ -10,7 +10,34 @@
 namespace fogbench::tests {
 namespace {
 
-using Recipe = std::function<Series(const World&, const ForeignEffect&)>;
+/// One effect's equation, and what may be drawn of it.
+struct Recipe {
+  template <class Equation>
+  Recipe(Equation its) : equation(std::move(its)) {}  // NOLINT: so that an equation is a recipe
+  Recipe() = default;
+
+  std::function<Series(const World&, const ForeignEffect&)> equation;
+  double least = 0.0, most = 0.0;  ///< of the inner parameter; none where `most` is 0
+  bool in_time = false;            ///< the two are shares of the record's length
+  bool has_other_shape = false;
+};
+
+Recipe inner(double least, double most, Recipe recipe) {
+  recipe.least = least;
+  recipe.most = most;
+  return recipe;
+}
+
+Recipe at_an_instant(double least, double most, Recipe recipe) {
+  recipe = inner(least, most, std::move(recipe));
+  recipe.in_time = true;
+  return recipe;
+}
+
+Recipe also_in_another_shape(Recipe recipe) {
+  recipe.has_other_shape = true;
+  return recipe;
+}
 
 Series mapped(std::size_t n, const std::function<double(std::size_t)>& f) {
   Series out(n);
@@ -106,10 +133,11 @@ void add_thermal(std::map<std::string, Recipe>& all) {
         });
   }
   all["temperature_rate"] = [](const World& w, const ForeignEffect&) { return w.rate_c_per_h; };
-  all["temperature_rate_lagged"] = [](const World& w, const ForeignEffect& e) {
-    if (other(e)) return lagged(lagged(w.rate_c_per_h, e.inner / 2.0), e.inner / 2.0);
-    return lagged(w.rate_c_per_h, e.inner);
-  };
+  all["temperature_rate_lagged"] =
+      also_in_another_shape(inner(60.0, 900.0, [](const World& w, const ForeignEffect& e) {
+        if (other(e)) return lagged(lagged(w.rate_c_per_h, e.inner / 2.0), e.inner / 2.0);
+        return lagged(w.rate_c_per_h, e.inner);
+      }));
   all["temperature_acceleration"] =
       instant([](const World& w, const ForeignEffect&, std::size_t i) {
         const double before = i > 0 ? w.rate_c_per_h[i - 1] : 0.0;
@@ -124,14 +152,16 @@ void add_thermal(std::map<std::string, Recipe>& all) {
         const double before = i > 0 ? w.gradient_c[i - 1] : 0.0;
         return (w.gradient_c[i] - before) * 3600.0 / kGridStep;
       });
-  all["temperature_hysteresis"] = [](const World& w, const ForeignEffect& e) {
-    const Series t = mapped(w.size(), [&](std::size_t i) { return excess(w, i); });
-    if (!other(e)) return play(t, e.inner);
-    return sum(sum(play(t, 0.3 * e.inner), 1.0, play(t, e.inner)), 1.0, play(t, 2.5 * e.inner));
-  };
-  all["temperature_ripple"] = instant([](const World& w, const ForeignEffect& e, std::size_t i) {
-    return std::sin(2.0 * std::numbers::pi * excess(w, i) / e.inner + e.phase);
-  });
+  all["temperature_hysteresis"] =
+      also_in_another_shape(inner(1.0, 6.0, [](const World& w, const ForeignEffect& e) {
+        const Series t = mapped(w.size(), [&](std::size_t i) { return excess(w, i); });
+        if (!other(e)) return play(t, e.inner);
+        return sum(sum(play(t, 0.3 * e.inner), 1.0, play(t, e.inner)), 1.0, play(t, 2.5 * e.inner));
+      }));
+  all["temperature_ripple"] =
+      inner(2.5, 9.0, instant([](const World& w, const ForeignEffect& e, std::size_t i) {
+              return std::sin(2.0 * std::numbers::pi * excess(w, i) / e.inner + e.phase);
+            }));
   all["heater_power"] = [](const World& w, const ForeignEffect&) { return w.heater_w; };
   all["ambient_temperature"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
     return w.ambient_c[i] - kLaboratory;
@@ -140,24 +170,27 @@ void add_thermal(std::map<std::string, Recipe>& all) {
 
 void add_timed(std::map<std::string, Recipe>& all) {
   all["bias"] = instant([](const World&, const ForeignEffect&, std::size_t) { return 1.0; });
-  all["bias_step"] = instant([](const World&, const ForeignEffect& e, std::size_t i) {
-    const double since = World::time_s(i) - e.inner;
-    if (other(e)) return std::clamp(since / 120.0, 0.0, 1.0);
-    return since >= 0.0 ? 1.0 : 0.0;
-  });
+  all["bias_step"] = also_in_another_shape(
+      at_an_instant(0.15, 0.85, instant([](const World&, const ForeignEffect& e, std::size_t i) {
+                      const double since = World::time_s(i) - e.inner;
+                      if (other(e)) return std::clamp(since / 120.0, 0.0, 1.0);
+                      return since >= 0.0 ? 1.0 : 0.0;
+                    })));
   all["drift_linear"] = instant(
       [](const World&, const ForeignEffect&, std::size_t i) { return World::time_s(i) / 3600.0; });
-  all["warm_up"] = instant([](const World&, const ForeignEffect& e, std::size_t i) {
-    const double t = World::time_s(i);
-    return std::exp(-t / e.inner) + (other(e) ? 0.5 * std::exp(-t / (4.0 * e.inner)) : 0.0);
-  });
+  all["warm_up"] = also_in_another_shape(inner(
+      600.0, 3600.0, instant([](const World&, const ForeignEffect& e, std::size_t i) {
+        const double t = World::time_s(i);
+        return std::exp(-t / e.inner) + (other(e) ? 0.5 * std::exp(-t / (4.0 * e.inner)) : 0.0);
+      })));
   all["earth_rate_projection"] = instant([](const World& w, const ForeignEffect& e, std::size_t i) {
     return std::cos(w.azimuth_deg[i] * std::numbers::pi / 180.0 - e.phase);
   });
-  all["coil_heating"] = [](const World& w, const ForeignEffect& e) {
-    if (other(e)) return lagged(lagged(coil_power(w), e.inner / 2.0), e.inner / 2.0);
-    return lagged(coil_power(w), e.inner);
-  };
+  all["coil_heating"] =
+      also_in_another_shape(inner(600.0, 5400.0, [](const World& w, const ForeignEffect& e) {
+        if (other(e)) return lagged(lagged(coil_power(w), e.inner / 2.0), e.inner / 2.0);
+        return lagged(coil_power(w), e.inner);
+      }));
 }
 
 void add_magnetic(std::map<std::string, Recipe>& all) {
@@ -175,19 +208,21 @@ void add_magnetic(std::map<std::string, Recipe>& all) {
         instant([=](const World& w, const ForeignEffect&, std::size_t i) {
           return field(w, axis, i) * field(w, next, i);
         });
-    all["magnetic_saturation" + end] =
-        instant([=](const World& w, const ForeignEffect& e, std::size_t i) {
-          const double x = field(w, axis, i) / e.inner;
-          return other(e) ? x / std::sqrt(1.0 + x * x) : std::tanh(x);
-        });
-    all["magnetic_hysteresis" + end] = [=](const World& w, const ForeignEffect& e) {
-      return other(e) ? relaxing_loop(field(w, axis), e.inner) : play(field(w, axis), e.inner);
-    };
-    all["magnetic_settling" + end] = [=](const World& w, const ForeignEffect& e) {
-      const Series h = field(w, axis);
-      if (!other(e)) return settling(h, e.inner);
-      return sum(settling(h, e.inner / 2.0), 0.5, settling(h, 2.0 * e.inner));
-    };
+    all["magnetic_saturation" + end] = also_in_another_shape(
+        inner(0.7, 2.5, instant([=](const World& w, const ForeignEffect& e, std::size_t i) {
+                const double x = field(w, axis, i) / e.inner;
+                return other(e) ? x / std::sqrt(1.0 + x * x) : std::tanh(x);
+              })));
+    all["magnetic_hysteresis" + end] =
+        also_in_another_shape(inner(0.25, 1.2, [=](const World& w, const ForeignEffect& e) {
+          return other(e) ? relaxing_loop(field(w, axis), e.inner) : play(field(w, axis), e.inner);
+        }));
+    all["magnetic_settling" + end] =
+        also_in_another_shape(inner(40.0, 240.0, [=](const World& w, const ForeignEffect& e) {
+          const Series h = field(w, axis);
+          if (!other(e)) return settling(h, e.inner);
+          return sum(settling(h, e.inner / 2.0), 0.5, settling(h, 2.0 * e.inner));
+        }));
     all["magnetic_temperature" + end] =
         instant([=](const World& w, const ForeignEffect&, std::size_t i) {
           return field(w, axis, i) * excess(w, i);
@@ -217,11 +252,12 @@ void add_outside(std::map<std::string, Recipe>& all) {
   all["outside_sine_field_z"] = instant([](const World& w, const ForeignEffect&, std::size_t i) {
     return std::sin(2.0 * std::numbers::pi * field(w, 2, i) / 1.9);
   });
-  all["outside_pulse"] = instant([](const World& w, const ForeignEffect& e, std::size_t i) {
-    const double lasts = 0.2 * World::time_s(w.size());
-    const double since = World::time_s(i) - e.inner;
-    return since >= 0.0 && since < lasts ? 1.0 : 0.0;
-  });
+  all["outside_pulse"] =
+      at_an_instant(0.15, 0.65, instant([](const World& w, const ForeignEffect& e, std::size_t i) {
+                      const double lasts = 0.2 * World::time_s(w.size());
+                      const double since = World::time_s(i) - e.inner;
+                      return since >= 0.0 && since < lasts ? 1.0 : 0.0;
+                    }));
   all["outside_temperature_kink"] =
       instant([](const World& w, const ForeignEffect&, std::size_t i) {
         return std::abs(excess(w, i) - 17.0);
@@ -255,9 +291,10 @@ void add_unusual(std::map<std::string, Recipe>& all) {
       instant([](const World& w, const ForeignEffect&, std::size_t i) {
         return std::exp(field(w, 2, i) / 1.2);
       });
-  all["outside_sine_in_time"] = instant([](const World&, const ForeignEffect& e, std::size_t i) {
-    return std::sin(2.0 * std::numbers::pi * World::time_s(i) / e.inner + e.phase);
-  });
+  all["outside_sine_in_time"] =
+      inner(2400.0, 7200.0, instant([](const World&, const ForeignEffect& e, std::size_t i) {
+              return std::sin(2.0 * std::numbers::pi * World::time_s(i) / e.inner + e.phase);
+            }));
   all["outside_creep"] = instant([](const World&, const ForeignEffect&, std::size_t i) {
     return std::log1p(World::time_s(i) / 120.0);
   });
@@ -287,41 +324,14 @@ const std::map<std::string, Recipe>& recipes() {
   return all;
 }
 
-/// Ends of the inner parameter's range, empty when the effect has none.
-std::pair<double, double> inner_range(const std::string& id, const World& world) {
-  const double length_s = World::time_s(world.size());
-  const auto is = [&](const char* prefix) { return id.starts_with(prefix); };
-  if (id == "bias_step") return {0.15 * length_s, 0.85 * length_s};
-  if (id == "outside_pulse") return {0.15 * length_s, 0.65 * length_s};
-  if (id == "outside_sine_in_time") return {2400.0, 7200.0};
-  if (id == "warm_up") return {600.0, 3600.0};
-  if (id == "temperature_rate_lagged") return {60.0, 900.0};
-  if (id == "temperature_hysteresis") return {1.0, 6.0};
-  if (id == "temperature_ripple") return {2.5, 9.0};
-  if (id == "coil_heating") return {600.0, 5400.0};
-  if (is("magnetic_saturation")) return {0.7, 2.5};
-  if (is("magnetic_hysteresis")) return {0.25, 1.2};
-  if (is("magnetic_settling")) return {40.0, 240.0};
-  return {0.0, 0.0};
-}
-
 }  // namespace
 
 std::vector<std::string> other_shapes() {
-  return {"magnetic_hysteresis_x",
-          "magnetic_hysteresis_y",
-          "magnetic_hysteresis_z",
-          "magnetic_saturation_x",
-          "magnetic_saturation_y",
-          "magnetic_saturation_z",
-          "magnetic_settling_x",
-          "magnetic_settling_y",
-          "magnetic_settling_z",
-          "temperature_rate_lagged",
-          "temperature_hysteresis",
-          "coil_heating",
-          "warm_up",
-          "bias_step"};
+  std::vector<std::string> out;
+  for (const auto& [id, recipe] : recipes()) {
+    if (recipe.has_other_shape) out.push_back(id);
+  }
+  return out;
 }
 
 std::vector<std::string> outside_effects() {
@@ -335,19 +345,22 @@ std::vector<std::string> outside_effects() {
 Series regressor(const World& world, const ForeignEffect& effect) {
   const auto recipe = recipes().find(effect.id);
   assert(recipe != recipes().end());
-  return recipe->second(world, effect);
+  return recipe->second.equation(world, effect);
 }
 
 ForeignEffect drawn_effect(const std::string& id, Shape shape, const World& world,
                            std::mt19937_64& engine) {
   ForeignEffect effect{.id = id, .shape = shape};
   std::uniform_real_distribution<> uniform;
-  const auto [least, most] = inner_range(id, world);
   const double share = uniform(engine);
-  const bool instant_in_time = id == "bias_step" || id == "outside_pulse";
-  if (most > 0.0) {
-    effect.inner =
-        instant_in_time ? least + share * (most - least) : least * std::pow(most / least, share);
+  const auto found = recipes().find(id);
+  assert(found != recipes().end());
+  const Recipe& recipe = found->second;
+  if (recipe.in_time) {
+    const double at = recipe.least + share * (recipe.most - recipe.least);
+    effect.inner = at * World::time_s(world.size());
+  } else if (recipe.most > 0.0) {
+    effect.inner = recipe.least * std::pow(recipe.most / recipe.least, share);
   }
   effect.phase = 2.0 * std::numbers::pi * uniform(engine);
   effect.amplitude = uniform(engine) < 0.5 ? -1.0 : 1.0;
