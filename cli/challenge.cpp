@@ -12,7 +12,9 @@
 #include "cli/command.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
+#include "config/bench.hpp"
 #include "config/output_file.hpp"
+#include "config/paths.hpp"
 #include "daemon/run_options.hpp"
 #include "record/export.hpp"
 #include "record/file_hash.hpp"
@@ -29,6 +31,7 @@ constexpr auto kSays =
 
 struct ChallengeOptions {
   std::optional<std::uint64_t> seed;
+  std::optional<std::string> bench;
   std::string folder;
   bool json = false;
 };
@@ -91,6 +94,19 @@ fs::path folder_for(const ChallengeOptions& options) {
   return fmt::format("challenge-{}", number);
 }
 
+Result<ChallengeRoom> room_for(const ChallengeOptions& options) {
+  ChallengeRoom room{.bench = options.bench};
+  if (!room.bench) return room;
+  const auto file = config::find_config("benches", *room.bench);
+  if (!file) return file.error();
+  const auto bench = config::load_bench(*file);
+  if (!bench) return bench.error();
+  for (const auto& channel : config::auxiliary_channels(*bench)) {
+    room.channels.push_back(channel.name);
+  }
+  return room;
+}
+
 std::vector<std::string> effects_of(const config::ModelFile& model) {
   std::vector<std::string> names;
   for (const config::ModelTerm& term : model.terms) names.push_back(term.effect);
@@ -120,6 +136,7 @@ Result<std::size_t> make(std::uint64_t seed, const ChallengeDraw& draw, const Ne
   const std::string sealed = sealed_text({.says = kSays,
                                           .software_version = FOGBENCH_VERSION,
                                           .noise = draw.noise,
+                                          .bench = draw.bench,
                                           .procedure = draw.procedure,
                                           .set = draw.set,
                                           .data_sha256 = *sha256},
@@ -138,7 +155,9 @@ Result<ExitStatus> run_challenge(const ChallengeOptions& options) {
   const auto folder = NewFolder::open(path);
   if (!folder) return folder.error();
   const std::uint64_t seed = options.seed.value_or(daemon::random_seed());
-  const ChallengeDraw draw = draw_challenge(seed);
+  const auto room = room_for(options);
+  if (!room) return room.error();
+  const ChallengeDraw draw = draw_challenge(seed, *room);
   const auto rows = make(seed, draw, **folder);
   if (!rows) return rows.error();
   if (const Status done = (*folder)->commit(); !done) return done.error();
@@ -176,12 +195,16 @@ void add_challenge(CLI::App& app, Action& action) {
       app, action, "challenge", "Make a sealed simulated gyro to practise on",
       "  fogbench challenge\n"
       "  fogbench challenge --seed 7 -o gyro-7\n"
-      "It hides nothing, one effect of the catalogue or two, of a size that the data tell. The\n"
-      "seal keeps you from seeing the answer by accident; it does not keep a secret.",
+      "  fogbench challenge --bench simulated-auxiliary\n"
+      "It hides nothing, one effect of the catalogue or two, of a size that the data tell; on a\n"
+      "bench with auxiliary sensors one of them may be what they measure. The seal keeps you\n"
+      "from seeing the answer by accident; it does not keep a secret.",
       [](CLI::App& command, ChallengeOptions& options) {
         daemon::add_seed_option(command, options.seed);
         command.get_option("--seed")->description(
             "Of everything: the same challenge again (default: drawn, and sealed)");
+        command.add_option("--bench", options.bench,
+                           "A simulated bench file, or a ready one (default: simulated)");
         command.add_option("-o,--output", options.folder,
                            "Folder to make (default: challenge-SEED, or the first free "
                            "challenge-1, challenge-2...)");

@@ -77,7 +77,9 @@ ChallengeBench::ChallengeBench(const ChallengeDraw& draw, daemon::Setup setup,
     : seed_(draw.bench_seed), setup_(std::move(setup)), plan_(std::move(plan)) {}
 
 Result<ChallengeBench> ChallengeBench::open(const ChallengeDraw& draw) {
-  auto setup = daemon::load_setup({});
+  daemon::SetupOptions options;
+  if (draw.bench) options.bench = *draw.bench;
+  auto setup = daemon::load_setup(options);
   if (!setup) return setup.error();
   daemon::Parameters parameters;
   for (const auto& [name, values] : draw.set) parameters[name] = values;

@@ -25,6 +25,7 @@ void describe(Visitor& v, ChallengeFile& f) {
   v.required("says", f.says, "What this is.");
   v.required("software_version", f.software_version, "That made it.");
   v.required("noise", f.noise, "Grade of the gyro.");
+  v.optional("bench", f.bench, "That it was measured on, where not the usual one.");
   v.required("procedure", f.procedure, "That measured it.");
   v.optional("set", f.set, "Parameters of the procedure.");
   v.required("data_sha256", f.data_sha256, "Of measurements.csv.");

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,8 @@ struct ChallengeSecret {
 struct ChallengeFile {
   std::string says;
   std::string software_version;
-  std::string noise;  ///< grade
+  std::string noise;                 ///< grade
+  std::optional<std::string> bench;  ///< none: the usual one
   std::string procedure;
   std::map<std::string, std::vector<double>> set;  ///< its parameters, where not as they stand
   std::string data_sha256;

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "model/effects/catalogue.hpp"
+#include "model/effects/sensitivity.hpp"
+#include "simulator/effects/effect.hpp"
 #include "simulator/random.hpp"
 
 namespace fogbench::cli {
@@ -15,13 +17,20 @@ namespace {
 /// The effects of one family: the axis is drawn after it.
 using Kind = std::vector<const model::EffectInfo*>;
 
+/// The simulator can hide it there: what acts on an auxiliary channel needs the sensor.
+bool can_hide(const std::string& effect, const ChallengeRoom& room) {
+  const auto hidden = simulator::find_effect(effect);
+  return hidden && (hidden->channel.empty() || std::find(room.channels.begin(), room.channels.end(),
+                                                         hidden->channel) != room.channels.end());
+}
+
 /// Those that ready procedures tell from the others. `acceptance` sweeps and heats: it shows them
-/// all.
-std::vector<Kind> kinds(bool swept, bool heated) {
+/// all. Last come the causes that only the room has, which no procedure moves.
+std::vector<Kind> kinds(bool swept, bool heated, const ChallengeRoom& room) {
   std::vector<Kind> out;
   for (const model::Effect* effect : model::catalogue()) {
     const model::EffectInfo& info = effect->info();
-    if (!info.in_challenge) continue;
+    if (!info.in_challenge || !can_hide(info.id, room)) continue;
     using By = model::InChallenge::By;
     const By by = info.in_challenge->by;
     if ((by == By::kSweep && !swept) || (by == By::kHeating && !heated)) continue;
@@ -33,6 +42,13 @@ std::vector<Kind> kinds(bool swept, bool heated) {
   std::sort(out.begin(), out.end(), [](const Kind& a, const Kind& b) {
     return a.front()->in_challenge->place < b.front()->in_challenge->place;
   });
+  Kind recorded;
+  for (const std::string& channel : room.channels) {
+    const auto& form = model::effects::kSensitivityForms.front();
+    const std::string id = model::effects::sensitivity_of(form, channel);
+    if (can_hide(id, room)) recorded.push_back(&model::find_effect(id)->info());
+  }
+  if (!recorded.empty()) out.push_back(std::move(recorded));
   return out;
 }
 
@@ -57,6 +73,7 @@ class Draw {
     config::HiddenEffect hidden;
     hidden.effect = info.id;
     hidden.amplitude = sign();
+    if (!info.in_challenge) return hidden;
     for (const auto& [parameter, range] : info.in_challenge->ranges) {
       hidden.parameters[parameter] =
           three_digits(range.minimum > 0.0 ? logarithmic(range.minimum, range.maximum)
@@ -92,9 +109,10 @@ double three_digits(double value) {
   return value;
 }
 
-ChallengeDraw draw_challenge(std::uint64_t seed) {
+ChallengeDraw draw_challenge(std::uint64_t seed, const ChallengeRoom& room) {
   Draw draw(seed);
   ChallengeDraw out;
+  out.bench = room.bench;
   out.bench_seed = simulator::derive_seed(seed, "challenge bench");
 
   // The procedure is drawn before the effects, so that it does not tell how many there are.
@@ -111,7 +129,7 @@ ChallengeDraw draw_challenge(std::uint64_t seed) {
   out.model.name = "start";
   out.model.description = "A bias and what the procedure excites, linear: all left to the fit.";
 
-  std::vector<Kind> possible = kinds(swept, heated);
+  std::vector<Kind> possible = kinds(swept, heated, room);
   const double how_many = draw.uniform(0.0, 1.0);
   const std::size_t count = how_many < 0.125 ? 0 : how_many < 0.325 ? 2 : 1;
   for (std::size_t i = 0; i < count; ++i) {
@@ -125,9 +143,9 @@ ChallengeDraw draw_challenge(std::uint64_t seed) {
   return out;
 }
 
-std::vector<std::string> hideable_effects() {
+std::vector<std::string> hideable_effects(const ChallengeRoom& room) {
   std::vector<std::string> all;
-  for (const Kind& kind : kinds(true, true)) {
+  for (const Kind& kind : kinds(true, true, room)) {
     for (const model::EffectInfo* info : kind) all.push_back(info->id);
   }
   return all;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,15 @@
 
 namespace fogbench::cli {
 
+/// A bench, and what of it matters here.
+struct ChallengeRoom {
+  std::optional<std::string> bench = {};   ///< none: the usual one
+  std::vector<std::string> channels = {};  ///< of its auxiliary sensors: causes that may act
+};
+
 /// A draw before it was measured: each hidden effect has the amplitude 1 or -1.
 struct ChallengeDraw {
+  std::optional<std::string> bench;                ///< none: the usual one
   std::string procedure;                           ///< a ready one
   std::map<std::string, std::vector<double>> set;  ///< its parameters, where not as they stand
   std::string noise;                               ///< grade
@@ -27,13 +35,14 @@ struct ChallengeDraw {
 
 inline constexpr std::size_t kMostHidden = 2;
 
-/// Of 40 draws, on average: 5 hide nothing, 27 one effect, 8 two effects of different kinds.
-ChallengeDraw draw_challenge(std::uint64_t seed);
+/// Of 40 draws, on average: 5 hide nothing, 27 one effect, 8 two effects of different kinds. What
+/// the bench's auxiliary sensors measure is one kind more.
+ChallengeDraw draw_challenge(std::uint64_t seed, const ChallengeRoom& room = {});
 
 /// Rounded, so that a revealed number is one that a person would have chosen.
 double three_digits(double value);
 
-/// Every effect that a challenge may hide.
-std::vector<std::string> hideable_effects();
+/// Every effect that a challenge may hide there.
+std::vector<std::string> hideable_effects(const ChallengeRoom& room = {});
 
 }  // namespace fogbench::cli

@@ -50,6 +50,15 @@ bool takes_three_levels(const MovingSignal& x) {
   return levels.size() >= 3;
 }
 
+/// The generic forms are for causes that the catalogue does not know.
+bool is_in_catalogue(const std::string& column) {
+  const auto effects = catalogue();
+  return std::any_of(effects.begin(), effects.end(), [&](const Effect* effect) {
+    const auto& signals = effect->info().signals;
+    return std::find(signals.begin(), signals.end(), column) != signals.end();
+  });
+}
+
 class CausesOf {
  public:
   CausesOf(LibraryBuilder& builder, const MovingSignal& x)
@@ -127,7 +136,7 @@ void add_sensitivities(LibraryBuilder& builder) {
   const Signals& signals = builder.signals();
   std::size_t tried = 0;
   for (const std::string& name : signals.table().column_names()) {
-    if (config::is_point_channel(name) || is_made_for_analysis(name) ||
+    if (config::is_point_channel(name) || is_made_for_analysis(name) || is_in_catalogue(name) ||
         name == builder.source().model.observable) {
       continue;
     }

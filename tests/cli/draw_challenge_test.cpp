@@ -7,6 +7,7 @@
 
 #include "config/model_file.hpp"
 #include "model/effects/catalogue.hpp"
+#include "simulator/effects/effect.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -41,6 +42,31 @@ TEST(DrawChallenge, HidesEveryEffectThatItMayAndNoOther) {
   }
   const std::vector<std::string> may = hideable_effects();
   EXPECT_EQ(seen, std::set<std::string>(may.begin(), may.end()));
+}
+
+TEST(DrawChallenge, TheSimulatorHidesTheCataloguesEffectsAndNoOthers) {
+  std::set<std::string> known, hidden;
+  for (const model::Effect* effect : model::catalogue()) known.insert(effect->info().id);
+  for (const simulator::EffectEntry& entry : simulator::all_effects()) {
+    if (!entry.of_a_channel) hidden.insert(entry.id);
+  }
+  EXPECT_EQ(known, hidden);
+}
+
+TEST(DrawChallenge, WhatTheRoomsSensorsMeasureMayHideWithoutMovingOtherDraws) {
+  const ChallengeRoom room{.bench = "simulated-auxiliary",
+                           .channels = {"pressure_hpa", "supply_v"}};
+  const std::vector<std::string> usual = hideable_effects();
+  std::vector<std::string> more = usual;
+  more.insert(more.end(), {"sensitivity(pressure_hpa)", "sensitivity(supply_v)"});
+  EXPECT_EQ(hideable_effects(room), more);
+  std::set<std::string> seen;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    for (const auto& effect : draw_challenge(seed, room).scenario.hidden) {
+      seen.insert(effect.effect);
+    }
+  }
+  EXPECT_EQ(seen, std::set<std::string>(more.begin(), more.end()));
 }
 
 TEST(DrawChallenge, TheProcedureDoesNotTellHowManyEffectsHide) {
