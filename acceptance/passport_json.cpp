@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "config/noise_parts.hpp"
 #include "record/file_hash.hpp"
 #include "record/store.hpp"
 
@@ -58,17 +59,12 @@ ordered_json repeat_json(const model::Repeat& row) {
 ordered_json fit_json(const TestResults& test) {
   if (!test.fit) return test.fit_problem.empty() ? ordered_json() : ordered_json(test.fit_problem);
   const model::FitResult& fit = *test.fit;
-  const config::NoiseCoefficients& noise = fit.noise.noise;
   ordered_json out{{"model", test.model},
                    {"reference_temperature_c", fit.fitted.reference_temperature_c},
                    {"rows", fit.rows.size()},
                    {"degrees_of_freedom", fit.degrees_of_freedom},
                    {"rms_deg_per_h", fit.rms}};
-  if (fit.coloured) {
-    out["noise"] = {{"N_deg_per_sqrt_h", noise.angle_random_walk_deg_per_sqrt_h},
-                    {"B_deg_per_h", noise.bias_instability_deg_per_h},
-                    {"K_deg_per_h_per_sqrt_h", noise.rate_random_walk_deg_per_h_per_sqrt_h}};
-  }
+  if (fit.coloured) out["noise"] = config::noise_json(fit.noise.noise);
   ordered_json names = ordered_json::array(), covariance = ordered_json::array();
   for (const model::Estimate& e : fit.estimates) {
     if (!e.held) names.push_back(e.name);

@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/load_table.hpp"
 #include "cli/output.hpp"
+#include "config/noise_parts.hpp"
 #include "model/noise/allan.hpp"
 #include "model/noise/static_record.hpp"
 
@@ -20,25 +21,6 @@ struct AllanOptions {
   double interval_s = 0.0;
   bool json = false;
 };
-
-struct Coefficient {
-  const char* name;
-  const char* key;
-  const char* unit;
-  double value, error;
-};
-
-std::vector<Coefficient> coefficients(const model::AllanFit& fit) {
-  const config::NoiseCoefficients& n = fit.noise;
-  const config::NoiseCoefficients& e = fit.standard_error;
-  return {{"angle random walk N", "N_deg_per_sqrt_h", "deg/sqrt(h)",
-           n.angle_random_walk_deg_per_sqrt_h, e.angle_random_walk_deg_per_sqrt_h},
-          {"bias instability B", "B_deg_per_h", "deg/h", n.bias_instability_deg_per_h,
-           e.bias_instability_deg_per_h},
-          {"rate random walk K", "K_deg_per_h_per_sqrt_h", "deg/h/sqrt(h)",
-           n.rate_random_walk_deg_per_h_per_sqrt_h, e.rate_random_walk_deg_per_h_per_sqrt_h},
-          {"quantisation Q", "Q_deg", "deg", n.quantisation_deg, e.quantisation_deg}};
-}
 
 void print_text(const std::vector<model::AllanPoint>& curve, const Result<model::AllanFit>& fit) {
   TextTable table({{"tau", "s"}, {"Allan deviation", "deg/h"}, {"std error", "deg/h"}});
@@ -52,11 +34,13 @@ void print_text(const std::vector<model::AllanPoint>& curve, const Result<model:
     fmt::print("No noise coefficients: {}.\n", fit.error().message);
     return;
   }
-  for (const Coefficient& c : coefficients(*fit)) {
-    if (c.value > 0.0) {
-      fmt::print("{:<20} {:.3g} +- {:.2g} {}\n", c.name, c.value, c.error, c.unit);
+  for (const config::NoisePart& part : config::kNoiseParts) {
+    const double value = fit->noise.*part.value;
+    if (value > 0.0) {
+      fmt::print("{:<20} {:.3g} +- {:.2g} {}\n", part.name, value, fit->standard_error.*part.value,
+                 part.unit);
     } else {
-      fmt::print("{:<20} not seen in this record\n", c.name);
+      fmt::print("{:<20} not seen in this record\n", part.name);
     }
   }
 }
@@ -77,9 +61,9 @@ nlohmann::json to_json(const model::StaticRecord& record,
                              {"noise", nullptr}};
   if (fit) {
     document["noise"] = nlohmann::json::object();
-    for (const Coefficient& c : coefficients(*fit)) {
-      document["noise"][c.key] = c.value;
-      document["standard_error"][c.key] = c.error;
+    for (const config::NoisePart& part : config::kNoiseParts) {
+      document["noise"][part.key] = fit->noise.*part.value;
+      document["standard_error"][part.key] = fit->standard_error.*part.value;
     }
   }
   return document;

@@ -13,6 +13,7 @@
 #include "cli/noise_option.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
+#include "config/noise_parts.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
@@ -147,7 +148,9 @@ nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options
                         {"sigmas", row.sigmas},
                         {"says", row.says}});
   }
-  const config::NoiseCoefficients& noise = c.fit.noise.noise;
+  nlohmann::json noise = config::noise_json(c.fit.noise.noise);
+  noise["coloured"] = c.fit.coloured;
+  noise["says"] = c.fit.noise.says;
   return {{"adequate", c.p_adequate >= model::kAdequate},
           {"p_adequate", c.p_adequate},
           {"looks_like", c.looks_like},
@@ -159,12 +162,7 @@ nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options
             {"white_floor_deg_per_h", c.floor.white},
             {"noise_floor_5_95_deg_per_h", {c.floor.low, c.floor.high}},
             {"rows", c.fit.rows.size()}}},
-          {"noise",
-           {{"coloured", c.fit.coloured},
-            {"says", c.fit.noise.says},
-            {"N_deg_per_sqrt_h", noise.angle_random_walk_deg_per_sqrt_h},
-            {"B_deg_per_h", noise.bias_instability_deg_per_h},
-            {"K_deg_per_h_per_sqrt_h", noise.rate_random_walk_deg_per_h_per_sqrt_h}}},
+          {"noise", noise},
           {"estimates", estimates},
           {"regions", regions},
           {"changes", changes},

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "config/noise_parts.hpp"
 #include "model/diagnose/verdict_text.hpp"
 
 namespace fogbench::cli {
@@ -111,9 +112,10 @@ ordered_json diagnosis_json(const model::Diagnosis& d, const std::string& next_s
   const std::string_view verdict = model::verdict_of(d);
   const std::string& suggestion = d.unexplained.suggestion;
   // Without times and durations the noise is only known to be independent from row to row.
-  const auto noise = [&](double value) {
-    return d.table.has("time_s") ? ordered_json(value) : ordered_json();
-  };
+  ordered_json noise = config::noise_json(d.noise);
+  if (!d.table.has("time_s")) {
+    for (auto& value : noise) value = nullptr;
+  }
   return {
       {"verdict", verdict},
       {"p_adequate", verdict == "cannot_tell" ? ordered_json() : ordered_json(d.p_adequate)},
@@ -124,10 +126,7 @@ ordered_json diagnosis_json(const model::Diagnosis& d, const std::string& next_s
         {"noise_floor_deg_per_h", d.noise_floor},
         {"white_floor_deg_per_h", d.floor.white},
         {"noise_floor_5_95_deg_per_h", {d.floor.low, d.floor.high}}}},
-      {"noise",
-       {{"N_deg_per_sqrt_h", noise(d.noise.angle_random_walk_deg_per_sqrt_h)},
-        {"B_deg_per_h", noise(d.noise.bias_instability_deg_per_h)},
-        {"K_deg_per_h_per_sqrt_h", noise(d.noise.rate_random_walk_deg_per_h_per_sqrt_h)}}},
+      {"noise", noise},
       {"noise_source", noise_source(d)},
       {"failures", failures},
       {"left_out", left_out},

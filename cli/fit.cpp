@@ -12,6 +12,7 @@
 #include "cli/noise_option.hpp"
 #include "cli/output.hpp"
 #include "cli/shell_word.hpp"
+#include "config/noise_parts.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
@@ -96,7 +97,6 @@ nlohmann::json to_json(const model::FitResult& result) {
   for (const Correlation& c : strong_correlations(result)) {
     correlations.push_back({{"between", {c.a, c.b}}, {"correlation", c.value}});
   }
-  const config::NoiseCoefficients& noise = result.noise.noise;
   nlohmann::json document = {{"estimates", estimates},
                              {"correlations", correlations},
                              {"rows", result.rows.size()},
@@ -107,9 +107,7 @@ nlohmann::json to_json(const model::FitResult& result) {
                              {"warnings", result.warnings}};
   document["noise"] = {{"coloured", result.coloured}, {"says", result.noise.says}};
   if (result.coloured) {
-    document["noise"]["N_deg_per_sqrt_h"] = noise.angle_random_walk_deg_per_sqrt_h;
-    document["noise"]["B_deg_per_h"] = noise.bias_instability_deg_per_h;
-    document["noise"]["K_deg_per_h_per_sqrt_h"] = noise.rate_random_walk_deg_per_h_per_sqrt_h;
+    document["noise"].update(nlohmann::json(config::noise_json(result.noise.noise)));
   }
   return document;
 }

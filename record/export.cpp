@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "config/csv_text.hpp"
 #include "procedures/channel_values.hpp"
 
 namespace fogbench::record {
@@ -16,14 +17,6 @@ namespace {
 template <class Number>
 void append_number(fmt::memory_buffer& out, Number value) {
   if (!std::isnan(value)) fmt::format_to(std::back_inserter(out), "{}", value);
-}
-
-/// Quoted only when it has to be (RFC 4180).
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
 }
 
 std::string_view text_of(const fmt::memory_buffer& buffer) {
@@ -62,7 +55,8 @@ Status write_points(const std::vector<Point>& points, config::OutputFile& out) {
   for (const std::string& name : auxiliary) fmt::format_to(append, ",{}", name);
   text.push_back('\n');
   for (const Point& point : points) {
-    fmt::format_to(append, "{},{},{}", point.test, csv_text(point.segment), name_of(point.kind));
+    fmt::format_to(append, "{},{},{}", point.test, config::csv_text(point.segment),
+                   name_of(point.kind));
     for (const auto& channel : point_channels()) {
       text.push_back(',');
       append_number(text, point.*channel.value);

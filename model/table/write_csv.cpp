@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "config/csv_text.hpp"
 #include "config/output_file.hpp"
 
 namespace fogbench::model {
@@ -12,17 +13,6 @@ namespace {
 
 /// Text that is handed to the file at once.
 constexpr std::size_t kFlushBytes = std::size_t{1} << 20;
-
-/// Quoted where the text would not come back as it is.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos && text == std::string(text.c_str()) &&
-      (text.empty() || (text.front() != ' ' && text.back() != ' '))) {
-    return text;
-  }
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
 
 bool says_something(const TextColumn& column, const std::string& nothing) {
   for (const std::uint32_t index : column.index) {
@@ -40,7 +30,7 @@ Status write_csv(const Table& table, const std::filesystem::path& file) {
   std::vector<std::span<const double>> numbers;
   std::string text;
   const auto add_name = [&](const std::string& name) {
-    text += (text.empty() ? "" : ",") + quoted(name);
+    text += (text.empty() ? "" : ",") + config::csv_text(name);
   };
   if (says_something(table.run(), "1")) {
     texts.push_back(&table.run());
@@ -57,7 +47,7 @@ Status write_csv(const Table& table, const std::filesystem::path& file) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     char separator = '\n';
     for (const TextColumn* column : texts) {
-      text += separator + quoted(column->at(row));
+      text += separator + config::csv_text(column->at(row));
       separator = ',';
     }
     for (const std::span<const double> column : numbers) {
