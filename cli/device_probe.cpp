@@ -15,6 +15,7 @@
 #include "config/device_file.hpp"
 #include "config/json_file.hpp"
 #include "config/paths.hpp"
+#include "config/roles.hpp"
 #include "drivers/auxiliary_sensor.hpp"
 #include "drivers/open_ports.hpp"
 #include "drivers/probe.hpp"
@@ -38,17 +39,13 @@ Result<std::pair<config::DeviceFile, std::string>> find_in_bench(const std::stri
   if (!file) return file.error();
   const auto bench = config::load_bench(*file);
   if (!bench) return bench.error();
-  std::map<std::string, std::pair<config::DeviceFile, std::string>> instruments{
-      {"thermostat", {bench->thermostat.device, bench->thermostat.connection}},
-      {"coil_horizontal", {bench->coil_horizontal.device, bench->coil_horizontal.connection}},
-      {"coil_vertical", {bench->coil_vertical.device, bench->coil_vertical.connection}},
-      {"gyro", {bench->gyro.device, bench->gyro.connection}}};
-  if (bench->magnetometer.fitted) {
-    instruments["magnetometer"] = {bench->magnetometer.device, bench->magnetometer.connection};
-  }
-  if (bench->turntable.device) {
-    instruments["turntable"] = {*bench->turntable.device, bench->turntable.connection};
-  }
+  std::map<std::string, std::pair<config::DeviceFile, std::string>> instruments;
+  config::for_each_role(
+      [&](const char* name, const auto& its) {
+        const auto* device = config::device_of(its);
+        if (device != nullptr) instruments[name] = {*device, its.connection};
+      },
+      *bench);
   for (const config::AuxiliaryConfig& sensor : bench->auxiliary) {
     instruments[sensor.name] = {
         std::visit([](const auto& d) { return config::DeviceFile(d); }, sensor.device),

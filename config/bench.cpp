@@ -7,6 +7,7 @@
 #include "config/describe_bench.hpp"
 #include "config/json_file.hpp"
 #include "config/paths.hpp"
+#include "config/roles.hpp"
 
 namespace fogbench::config {
 namespace {
@@ -22,8 +23,8 @@ bool check_scheme(const Place& at, const InstrumentConfig& i,
 
 /// Nobody is taken for another: neither an instrument nor a channel.
 bool check_auxiliary(const Place& at, const BenchConfig& b) {
-  std::vector<std::string> names{"thermostat",   "coil_horizontal", "coil_vertical",
-                                 "magnetometer", "turntable",       "gyro"};
+  std::vector<std::string> names;
+  for_each_role([&](const char* role, const auto&) { names.emplace_back(role); }, b);
   std::vector<std::string> channels;
   const auto is_new = [](std::vector<std::string>& known, const std::string& name) {
     if (std::find(known.begin(), known.end(), name) != known.end()) return false;

@@ -12,6 +12,7 @@
 
 #include "config/json_file.hpp"
 #include "config/paths.hpp"
+#include "config/roles.hpp"
 #include "daemon/parameters_json.hpp"
 #include "daemon/resumption.hpp"
 #include "drivers/open_ports.hpp"
@@ -102,20 +103,15 @@ Result<Setup> load_setup(const SetupOptions& options) {
 }
 
 Result<bool> is_simulated(const config::BenchConfig& bench) {
-  std::vector<std::pair<const char*, const config::InstrumentConfig*>> instruments = {
-      {"thermostat", &bench.thermostat},
-      {"coil_horizontal", &bench.coil_horizontal},
-      {"coil_vertical", &bench.coil_vertical},
-      {"gyro", &bench.gyro}};
-  if (bench.magnetometer.fitted) instruments.emplace_back("magnetometer", &bench.magnetometer);
-  if (bench.turntable.motorised) instruments.emplace_back("turntable", &bench.turntable);
-  for (const config::AuxiliaryConfig& sensor : bench.auxiliary) {
-    instruments.emplace_back(sensor.name.c_str(), &sensor);
-  }
   const char* simulated = nullptr;
   const char* real = nullptr;
-  for (const auto& [name, instrument] : instruments) {
-    (instrument->connection == "simulated" ? simulated : real) = name;
+  const auto look_at = [&](const char* name, const auto& its) {
+    if (config::device_of(its) == nullptr) return;
+    (its.connection == "simulated" ? simulated : real) = name;
+  };
+  config::for_each_role(look_at, bench);
+  for (const config::AuxiliaryConfig& sensor : bench.auxiliary) {
+    look_at(sensor.name.c_str(), sensor);
   }
   if (simulated != nullptr && real != nullptr) {
     return Error{ErrorCode::kBadInput,

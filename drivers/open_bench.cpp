@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "config/roles.hpp"
 #include "drivers/auxiliary_sensor.hpp"
 #include "drivers/hid_magnetometer.hpp"
 #include "drivers/modbus_thermostat.hpp"
@@ -15,11 +16,6 @@
 
 namespace fogbench::drivers {
 namespace {
-
-Status check_connected(const char* name, bool connected) {
-  if (connected) return {};
-  return Error{ErrorCode::kDevice, std::string(name) + ": is not connected to anything"};
-}
 
 /// Moves what was attached to its place in the bench.
 template <class Driver, class Place>
@@ -33,17 +29,14 @@ Status take(Result<std::unique_ptr<Driver>> attached, Place& place) {
 
 Result<Bench> attach_bench(const config::BenchConfig& config, Transports transports, Clock& clock,
                            Operator& operator_) {
-  for (const Status& connected :
-       {check_connected("thermostat", transports.thermostat != nullptr),
-        check_connected("coil_horizontal", transports.coil_horizontal != nullptr),
-        check_connected("coil_vertical", transports.coil_vertical != nullptr),
-        check_connected("magnetometer",
-                        transports.magnetometer != nullptr || !config.magnetometer.fitted),
-        check_connected("turntable",
-                        transports.turntable != nullptr || !config.turntable.motorised),
-        check_connected("gyro", transports.gyro != nullptr)}) {
-    if (!connected) return connected.error();
-  }
+  Status connected;
+  config::for_each_role(
+      [&](const char* role, const auto& transport, const auto& its) {
+        if (!connected || transport != nullptr || config::device_of(its) == nullptr) return;
+        connected = Error{ErrorCode::kDevice, std::string(role) + ": is not connected to anything"};
+      },
+      transports, config);
+  if (!connected) return connected.error();
   Bench bench;
   Status status = take(ScpiCoilSupply::attach("coil_horizontal", config.coil_horizontal,
                                               std::move(transports.coil_horizontal), clock),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/connection.hpp"
+#include "config/roles.hpp"
 #include "drivers/hid_port.hpp"
 #include "drivers/line_messages.hpp"
 #include "drivers/modbus_port.hpp"
@@ -121,22 +122,15 @@ Opened<SerialTransport> open_port(const config::LineSensor& device, const std::s
 }
 
 Result<Transports> open_ports(const config::BenchConfig& config, Clock& clock) {
-  const auto open = [&clock](const auto& instrument) {
-    return open_port(instrument.device, instrument.connection, clock);
-  };
   Transports t;
-  Status status = take("coil_horizontal", open(config.coil_horizontal), t.coil_horizontal);
-  if (status) status = take("coil_vertical", open(config.coil_vertical), t.coil_vertical);
-  if (status) status = take("thermostat", open(config.thermostat), t.thermostat);
-  if (status && config.magnetometer.fitted) {
-    status = take("magnetometer", open(config.magnetometer), t.magnetometer);
-  }
-  if (status && config.turntable.motorised) {
-    status =
-        take("turntable", open_port(*config.turntable.device, config.turntable.connection, clock),
-             t.turntable);
-  }
-  if (status) status = take("gyro", open(config.gyro), t.gyro);
+  Status status;
+  config::for_each_role(
+      [&](const char* role, const auto& its, auto& place) {
+        const auto* device = config::device_of(its);
+        if (!status || device == nullptr) return;
+        status = take(role, open_port(*device, its.connection, clock), place);
+      },
+      config, t);
   if (!status) return status.error();
   for (const config::AuxiliaryConfig& sensor : config.auxiliary) {
     const auto open_sensor = [&](const auto& device) -> Status {

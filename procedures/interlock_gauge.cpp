@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <numbers>
 
+#include "config/roles.hpp"
 #include "procedures/channel_values.hpp"
 #include "procedures/measurement_window.hpp"
 
@@ -60,12 +61,7 @@ std::vector<CalibrationDue> calibrations_of(const config::BenchConfig& bench) {
     const auto day = config::date_of(instrument.calibration_due);
     if (day) dates.push_back({name, *day});
   };
-  add("thermostat", bench.thermostat);
-  add("coil_horizontal", bench.coil_horizontal);
-  add("coil_vertical", bench.coil_vertical);
-  add("magnetometer", bench.magnetometer);
-  add("turntable", bench.turntable);
-  add("gyro", bench.gyro);
+  config::for_each_role(add, bench);
   for (const config::AuxiliaryConfig& sensor : bench.auxiliary) add(sensor.name, sensor);
   return dates;
 }

@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "config/roles.hpp"
 #include "drivers/named_error.hpp"
 #include "drivers/safe_state.hpp"
 #include "procedures/bench_watch.hpp"
@@ -448,26 +449,21 @@ RunEngine::RunEngine(const config::BenchConfig& config, drivers::Bench& bench,
 Result<std::vector<InstrumentRecord>> RunEngine::identify_instruments(
     const std::string& gyro_serial_number) {
   std::vector<InstrumentRecord> records;
-  config::InstrumentConfig gyro = config_.gyro;
-  gyro.serial_number = gyro_serial_number;
-  const auto identify = [&](const char* role, drivers::Instrument& instrument,
-                            const config::InstrumentConfig& config) -> Status {
-    auto identity = instrument.identity();
-    for (int i = 1; i < RunSession::kTries && !identity; ++i) identity = instrument.identity();
-    if (!identity) return drivers::named(role, identity.error());
-    records.push_back(
-        {role, *identity, config.serial_number, config.calibrated_on, config.calibration_due});
-    return {};
-  };
-  for (const Status& status :
-       {identify("thermostat", *bench_.thermostat, config_.thermostat),
-        identify("coil_horizontal", *bench_.coil_horizontal, config_.coil_horizontal),
-        identify("coil_vertical", *bench_.coil_vertical, config_.coil_vertical),
-        identify("magnetometer", *bench_.magnetometer, config_.magnetometer),
-        identify("turntable", *bench_.turntable, config_.turntable),
-        identify("gyro", *bench_.gyro, gyro)}) {
-    if (!status) return status.error();
-  }
+  Status known;
+  config::for_each_role(
+      [&](const char* role, auto& instrument, const config::InstrumentConfig& its) {
+        auto identity = instrument->identity();
+        for (int i = 1; i < RunSession::kTries && !identity; ++i) identity = instrument->identity();
+        if (!identity) {
+          if (known) known = drivers::named(role, identity.error());
+          return;
+        }
+        records.push_back({role, *identity,
+                           &its == &config_.gyro ? gyro_serial_number : its.serial_number,
+                           its.calibrated_on, its.calibration_due});
+      },
+      bench_, config_);
+  if (!known) return known.error();
   // One that is not there now may come later: its readings say when.
   for (std::size_t i = 0; i < bench_.auxiliary.size(); ++i) {
     const auto identity = bench_.auxiliary[i]->identity();

@@ -120,15 +120,18 @@ Status create_schema(Database& database) {
   return transaction->commit();
 }
 
-/// A store of an older version gets the columns of points that came later; its rows have no values
-/// there.
+/// A store of an older version gets the columns that came later; its rows have no values there.
 Status add_new_columns(Database& database) {
-  for (const procedures::PointChannel& channel : procedures::point_channels()) {
-    if (const Status ok = add_column(database, "points", channel.name, channel.meaning); !ok) {
-      return ok;
+  const auto add_all = [&](const char* table, const auto& channels) -> Status {
+    for (const auto& channel : channels) {
+      if (const Status ok = add_column(database, table, channel.name, channel.meaning); !ok) {
+        return ok;
+      }
     }
-  }
-  return {};
+    return {};
+  };
+  if (const Status ok = add_all("points", procedures::point_channels()); !ok) return ok;
+  return add_all("monitor", procedures::monitor_channels());
 }
 
 /// What the second version of the schema has and the first had not: runs that take up others.

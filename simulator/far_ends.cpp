@@ -8,15 +8,19 @@
 #include <string>
 #include <string_view>
 
+#include "config/roles.hpp"
+
 namespace fogbench::simulator {
 namespace {
 
 Status check_devices(const std::vector<config::FaultSpec>& faults,
                      const config::BenchConfig& bench) {
-  std::vector<std::string_view> devices{"thermostat", "coil_horizontal", "coil_vertical"};
-  if (bench.magnetometer.fitted) devices.emplace_back("magnetometer");
-  if (bench.turntable.motorised) devices.emplace_back("turntable");
-  devices.emplace_back("gyro");
+  std::vector<std::string_view> devices;
+  config::for_each_role(
+      [&](const char* role, const auto& its) {
+        if (config::device_of(its) != nullptr) devices.emplace_back(role);
+      },
+      bench);
   for (const auto& sensor : bench.auxiliary) devices.push_back(sensor.name);
   for (std::size_t i = 0; i < faults.size(); ++i) {
     if (std::find(devices.begin(), devices.end(), faults[i].device) != devices.end()) continue;
@@ -88,16 +92,17 @@ Result<AuxiliaryEnd> far_end_of(const config::AuxiliaryConfig& sensor, const Lin
 }  // namespace
 
 void FarEnds::set_fault(std::string_view device, FaultKind kind, bool on) {
-  if (device == "thermostat") return thermostat->set_fault(kind, on);
-  if (device == "coil_horizontal") return coil_horizontal->set_fault(kind, on);
-  if (device == "coil_vertical") return coil_vertical->set_fault(kind, on);
-  if (device == "magnetometer") return magnetometer->set_fault(kind, on);
-  if (device == "turntable") return turntable->set_fault(kind, on);
-  if (device == "gyro") return gyro->set_fault(kind, on);
-  const auto sensor = std::find_if(auxiliary.begin(), auxiliary.end(),
-                                   [&](const AuxiliaryEnd& its) { return its.name == device; });
-  assert(sensor != auxiliary.end());
-  std::visit([&](auto& end) { end->set_fault(kind, on); }, sensor->end);
+  bool found = false;
+  const auto set = [&](std::string_view name, auto& end) {
+    if (name != device) return;
+    end->set_fault(kind, on);
+    found = true;
+  };
+  config::for_each_role(set, *this);
+  for (AuxiliaryEnd& sensor : auxiliary) {
+    std::visit([&](auto& end) { set(sensor.name, end); }, sensor.end);
+  }
+  assert(found);
 }
 
 Result<FarEnds> make_far_ends(const config::BenchConfig& config,

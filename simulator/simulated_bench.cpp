@@ -1,5 +1,6 @@
 #include "simulator/simulated_bench.hpp"
 
+#include "config/roles.hpp"
 #include "simulator/far_ends.hpp"
 
 namespace fogbench::simulator {
@@ -10,15 +11,10 @@ Result<drivers::Transports> simulate_bench(const config::BenchConfig& config,
   Result<FarEnds> ends = make_far_ends(config, scenario, seed, clock);
   if (!ends) return ends.error();
   GyroFarEnd* const gyro = ends->gyro.get();
-  drivers::Transports transports{.thermostat = std::move(ends->thermostat),
-                                 .coil_horizontal = std::move(ends->coil_horizontal),
-                                 .coil_vertical = std::move(ends->coil_vertical),
-                                 .magnetometer = std::move(ends->magnetometer),
-                                 .turntable = std::move(ends->turntable),
-                                 .gyro = std::move(ends->gyro),
-                                 .auxiliary = {},
-                                 .turned_by_hand = {},
-                                 .exchange_gyro = [gyro] { gyro->exchange(); }};
+  drivers::Transports transports;
+  config::for_each_role([](const char*, auto& way, auto& end) { way = std::move(end); }, transports,
+                        *ends);
+  transports.exchange_gyro = [gyro] { gyro->exchange(); };
   for (AuxiliaryEnd& sensor : ends->auxiliary) {
     std::visit([&](auto& end) { transports.auxiliary.emplace_back(std::move(end)); }, sensor.end);
   }
