@@ -127,7 +127,7 @@ std::string legend(const Acceptance& acceptance, Language language) {
 std::string passport_plots(const Acceptance& acceptance, Language language) {
   std::string figures;
   const auto add = [&](SvgPlot plot) {
-    plot.decimal_comma = language == Language::kRussian;
+    plot.decimal_comma = text(Text::kDecimalMark, language) == ",";
     const std::string svg = plot.svg();
     if (!svg.empty()) figures += "<figure>" + svg + "</figure>\n";
   };

@@ -28,6 +28,7 @@ struct Named {
 constexpr Entry kTexts[] = {
     {Text::kTitle, {"Passport of the fiber-optic gyro", "Паспорт волоконно-оптического гироскопа"}},
     {Text::kLanguageCode, {"en", "ru"}},
+    {Text::kDecimalMark, {".", ","}},
     {Text::kIssued, {"issued", "составлен"}},
     {Text::kGyro, {"Gyro, serial number", "Гироскоп, заводской номер"}},
     {Text::kOverallPass,
@@ -297,7 +298,7 @@ std::string_view outcome_name(std::string_view outcome, Language language) {
 }
 
 std::string localised(std::string number, Language language) {
-  if (language == Language::kRussian) std::replace(number.begin(), number.end(), '.', ',');
+  std::replace(number.begin(), number.end(), '.', text(Text::kDecimalMark, language).front());
   return number;
 }
 

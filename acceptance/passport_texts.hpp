@@ -2,6 +2,7 @@
 // Every word of a passport's page, in each language, in one table: a text without its translation
 // does not compile (passport_texts.cpp).
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,10 +12,12 @@
 namespace fogbench::acceptance {
 
 enum class Language { kEnglish, kRussian };
+inline constexpr std::array kLanguages{Language::kEnglish, Language::kRussian};
 
 enum class Text {
   kTitle,
   kLanguageCode,
+  kDecimalMark,
   kIssued,
   kGyro,
   kOverallPass,

@@ -68,4 +68,12 @@ void add_device(CLI::App& app, Action& action);
 /// Of `fogbench device`.
 void add_device_probe(CLI::App& device, Action& action);
 
+inline constexpr void (*kCommands[])(CLI::App& app, Action& action) = {
+    add_plan,     add_procedure,  add_dry_run, add_simulate, add_runs,    add_show,
+    add_history,  add_export,     add_inspect, add_import,   add_effects, add_fit,
+    add_add,      add_compensate, add_compare, add_diagnose, add_allan,   add_verdict,
+    add_passport, add_challenge,  add_reveal,  add_run,      add_status,  add_watch,
+    add_pause,    add_resume,     add_abort,   add_answer,   add_queue,   add_device,
+};
+
 }  // namespace fogbench::cli

@@ -46,39 +46,6 @@ fogbench::daemon::ManualText manual_text() {
       "fogbenchd(8)"};
 }
 
-void add_commands(CLI::App& app, fogbench::cli::Action& action) {
-  fogbench::cli::add_plan(app, action);
-  fogbench::cli::add_procedure(app, action);
-  fogbench::cli::add_dry_run(app, action);
-  fogbench::cli::add_simulate(app, action);
-  fogbench::cli::add_runs(app, action);
-  fogbench::cli::add_show(app, action);
-  fogbench::cli::add_history(app, action);
-  fogbench::cli::add_export(app, action);
-  fogbench::cli::add_inspect(app, action);
-  fogbench::cli::add_import(app, action);
-  fogbench::cli::add_effects(app, action);
-  fogbench::cli::add_fit(app, action);
-  fogbench::cli::add_add(app, action);
-  fogbench::cli::add_compensate(app, action);
-  fogbench::cli::add_compare(app, action);
-  fogbench::cli::add_diagnose(app, action);
-  fogbench::cli::add_allan(app, action);
-  fogbench::cli::add_verdict(app, action);
-  fogbench::cli::add_passport(app, action);
-  fogbench::cli::add_challenge(app, action);
-  fogbench::cli::add_reveal(app, action);
-  fogbench::cli::add_run(app, action);
-  fogbench::cli::add_status(app, action);
-  fogbench::cli::add_watch(app, action);
-  fogbench::cli::add_pause(app, action);
-  fogbench::cli::add_resume(app, action);
-  fogbench::cli::add_abort(app, action);
-  fogbench::cli::add_answer(app, action);
-  fogbench::cli::add_queue(app, action);
-  fogbench::cli::add_device(app, action);
-}
-
 int cannot_print() {
   fogbench::cli::print_error("the results could not be written to standard output");
   return static_cast<int>(fogbench::ExitStatus::kFailed);
@@ -90,7 +57,7 @@ int run(int argc, char** argv) {
   app.footer(kFooter);
   app.set_version_flag("--version", "fogbench " FOGBENCH_VERSION);
   fogbench::cli::Action action;
-  add_commands(app, action);
+  for (const auto add : fogbench::cli::kCommands) add(app, action);
   fogbench::daemon::add_manual_options(app);
   if (const auto manual = fogbench::daemon::asked_manual(argc, argv, app, manual_text())) {
     if (std::fputs(manual->c_str(), stdout) < 0 || std::fflush(stdout) != 0) return cannot_print();

@@ -65,10 +65,12 @@ void add_passport(CLI::App& app, Action& action) {
         add_passport_options(command, options.passport);
         command.add_option("-o,--output,--out", options.output,
                            "File to write: JSON when its name ends with .json, else one HTML page");
-        daemon::add_choice_option<Language>(
-            command, "--language", options.language,
-            {{"en", Language::kEnglish}, {"ru", Language::kRussian}},
-            "Of the page: en or ru (default: en)");
+        std::map<std::string, Language> languages;
+        for (const Language language : acceptance::kLanguages) {
+          languages.emplace(acceptance::text(acceptance::Text::kLanguageCode, language), language);
+        }
+        daemon::add_choice_option<Language>(command, "--language", options.language, languages,
+                                            "Of the page (default: en)");
         command.add_flag("--json", options.json, "The passport as JSON on stdout");
       },
       run_passport);
