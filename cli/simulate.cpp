@@ -1,10 +1,7 @@
 // fogbench simulate --serve: the simulated bench at the wire.
 
 #include <fmt/format.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +14,7 @@
 #include "config/scratch_folder.hpp"
 #include "daemon/run_options.hpp"
 #include "daemon/session.hpp"
-#include "simulator/wire/file_descriptor.hpp"
+#include "daemon/stop_signals.hpp"
 #include "simulator/wire/served_bench.hpp"
 
 namespace fogbench::cli {
@@ -42,33 +39,6 @@ struct SimulateOptions {
   std::uint16_t usbip_port = kUsbipPort;
   std::string write_bench;
   bool json = false;
-};
-
-/// Readable once SIGINT, SIGTERM or SIGHUP has come; they end nothing by themselves meanwhile.
-class StopSignal {
- public:
-  StopSignal() {
-    sigset_t wanted;
-    sigemptyset(&wanted);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&wanted, signal);
-    sigprocmask(SIG_BLOCK, &wanted, &before_);
-    descriptor_ = simulator::FileDescriptor(signalfd(-1, &wanted, SFD_NONBLOCK | SFD_CLOEXEC));
-  }
-  StopSignal(const StopSignal&) = delete;
-  StopSignal& operator=(const StopSignal&) = delete;
-  ~StopSignal() {
-    // One that has come has been heard: it must not end the process when the mask is taken off.
-    signalfd_siginfo heard;
-    while (read(descriptor_.get(), &heard, sizeof heard) > 0) {
-    }
-    sigprocmask(SIG_SETMASK, &before_, nullptr);
-  }
-
-  int descriptor() const { return descriptor_.get(); }
-
- private:
-  sigset_t before_{};
-  simulator::FileDescriptor descriptor_;
 };
 
 /// The command that makes the kernel take the device.
@@ -139,7 +109,8 @@ Result<ExitStatus> run_simulate(const SimulateOptions& options) {
   const auto setup = daemon::load_setup(options.setup);
   if (!setup) return setup.error();
   const std::uint64_t seed = options.seed.value_or(daemon::random_seed());
-  const StopSignal stop;
+  drivers::SteadyClock machine;
+  const daemon::StopSignals stop(machine);
   // Where the links to the serial lines stand while the bench is served.
   const auto ttys = config::ScratchFolder::make();
   if (!ttys) return ttys.error();

@@ -1,7 +1,6 @@
 #include "daemon/control_server.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -9,6 +8,7 @@
 #include <cerrno>
 
 #include "daemon/json_rpc.hpp"
+#include "drivers/poll_set.hpp"
 
 namespace fogbench::daemon {
 namespace {
@@ -44,24 +44,25 @@ ControlServer::~ControlServer() = default;
 
 void ControlServer::serve_once() {
   const bool accepting = clock_.now() >= accept_again_;
-  std::vector<pollfd> files{{wake_, POLLIN, 0}, {accepting ? listening_ : -1, POLLIN, 0}};
+  drivers::PollSet files;
+  files.add(wake_, POLLIN);
+  if (accepting) files.add(listening_, POLLIN);
   bool subscribed = false;
   for (const auto& client : clients_) {
-    const short events = client->out.empty() ? POLLIN : POLLOUT;
-    files.push_back({client->socket.get(), events, 0});
+    files.add(client->socket.get(), client->out.empty() ? POLLIN : POLLOUT);
     subscribed = subscribed || client->caller.subscription;
   }
   const auto wait = subscribed ? kSubscriptionWait : kLongestWait;
-  if (poll(files.data(), files.size(), static_cast<int>(wait.count())) < 0) {
+  if (!files.wait(wait)) {
     // No memory, or fewer handles allowed than there are: asking again at once would do nothing
     // else.
-    if (errno != EINTR) clock_.sleep_for(kLongestWait);
+    clock_.sleep_for(kLongestWait);
     return;
   }
 
-  for (std::size_t i = 0; i < clients_.size(); ++i) {
-    Client& client = *clients_[i];
-    const short seen = files[i + 2].revents;
+  for (const auto& each : clients_) {
+    Client& client = *each;
+    const short seen = files.happened(client.socket.get());
     if ((seen & POLLIN) != 0) {
       read_from(client);
     } else if ((seen & (POLLERR | POLLHUP | POLLNVAL)) != 0) {
@@ -73,7 +74,7 @@ void ControlServer::serve_once() {
     if (outlived(client)) client.gone = true;
   }
   std::erase_if(clients_, [](const auto& client) { return client->gone; });
-  if ((files[1].revents & POLLIN) != 0) accept_clients();
+  if ((files.happened(listening_) & POLLIN) != 0) accept_clients();
 }
 
 void ControlServer::accept_clients() {

@@ -2,22 +2,30 @@
 
 #include <unistd.h>
 
+#include <utility>
+
 namespace fogbench::drivers {
 
-/// Closes what it holds.
+/// Owns a file descriptor; closes it.
 class FileDescriptor {
  public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  ~FileDescriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
+  FileDescriptor() = default;
   /// Negative when nothing could be opened.
-  int get() const { return fd_; }
+  explicit FileDescriptor(int number) : number_(number) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~FileDescriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+
+  int get() const { return number_; }
+  explicit operator bool() const { return number_ >= 0; }
 
  private:
-  int fd_;
+  int number_ = -1;
 };
 
 }  // namespace fogbench::drivers

@@ -7,13 +7,13 @@
 
 namespace fogbench::simulator {
 
-void Connection::enlist(PollSet& set) const {
+void Connection::enlist(drivers::PollSet& set) const {
   const bool room = input_.size() < most_input_ && !congested();
   const int events = (room ? POLLIN : 0) | (output_.empty() ? 0 : POLLOUT);
   set.add(descriptor_.get(), static_cast<short>(events));
 }
 
-bool Connection::receive(const PollSet& happened) {
+bool Connection::receive(const drivers::PollSet& happened) {
   const short what = happened.happened(descriptor_.get());
   if (what == 0) return true;
   if ((what & POLLIN) == 0) return (what & (POLLERR | POLLHUP | POLLNVAL)) == 0;

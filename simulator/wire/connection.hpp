@@ -2,21 +2,21 @@
 // A TCP connection with one host, in bounded memory: a host that sends without end is read no
 // faster than it is served, and one that never reads is not served any more.
 
+#include "drivers/file_descriptor.hpp"
 #include "simulator/wire/bytes.hpp"
 #include "simulator/wire/event_loop.hpp"
-#include "simulator/wire/file_descriptor.hpp"
 
 namespace fogbench::simulator {
 
 class Connection {
  public:
   /// `descriptor` is a socket that does not block. At most `most_input` bytes wait to be taken.
-  Connection(FileDescriptor descriptor, std::size_t most_input)
+  Connection(drivers::FileDescriptor descriptor, std::size_t most_input)
       : descriptor_(std::move(descriptor)), most_input_(most_input) {}
 
-  void enlist(PollSet& set) const;
+  void enlist(drivers::PollSet& set) const;
   /// Reads what has come. False when the host is gone.
-  bool receive(const PollSet& happened);
+  bool receive(const drivers::PollSet& happened);
 
   ByteView input() const { return input_; }
   void drop_input(std::size_t count);
@@ -31,7 +31,7 @@ class Connection {
  private:
   static constexpr std::size_t kMostOutput = 64 * 1024;
 
-  FileDescriptor descriptor_;
+  drivers::FileDescriptor descriptor_;
   std::size_t most_input_;
   Bytes input_;
   Bytes output_;

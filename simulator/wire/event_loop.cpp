@@ -1,7 +1,9 @@
 #include "simulator/wire/event_loop.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 
 namespace fogbench::simulator {
@@ -12,10 +14,10 @@ using drivers::Clock;
 /// A plug is found pulled at the latest after this time of the machine's, whoever is idle.
 constexpr std::chrono::milliseconds kLongestTurn{20};
 
-timespec machine_time(Clock::Duration bench, double speed) {
+std::chrono::nanoseconds machine_time(Clock::Duration bench, double speed) {
   const double wanted_ns = static_cast<double>(bench.count()) / speed;
   const double most_ns = std::chrono::duration<double, std::nano>(kLongestTurn).count();
-  return {0, static_cast<long>(std::clamp(wanted_ns, 0.0, most_ns))};
+  return std::chrono::nanoseconds{std::llround(std::clamp(wanted_ns, 0.0, most_ns))};
 }
 
 }  // namespace
@@ -23,13 +25,11 @@ timespec machine_time(Clock::Duration bench, double speed) {
 Status run_event_loop(const std::vector<std::unique_ptr<Server>>& servers, const Clock& clock,
                       double speed, int stop) {
   for (;;) {
-    PollSet set;
+    drivers::PollSet set;
     set.add(stop, POLLIN);
     for (const auto& server : servers) server->enlist(set);
     const Clock::Instant now = clock.now();
-    const timespec patience = machine_time(std::max(set.wake_at(), now) - now, speed);
-    auto& all = set.descriptors();
-    if (ppoll(all.data(), all.size(), &patience, nullptr) < 0 && errno != EINTR) {
+    if (!set.wait(machine_time(std::max(set.wake_at(), now) - now, speed))) {
       return Error{ErrorCode::kDevice, std::string("waiting failed: ") + std::strerror(errno)};
     }
     if (set.happened(stop) != 0) return {};

@@ -2,7 +2,7 @@
 
 namespace fogbench::simulator {
 
-void GyroServer::enlist(PollSet& set) const {
+void GyroServer::enlist(drivers::PollSet& set) const {
   const bool full = begin_ < end_;
   terminal_.enlist(set, static_cast<short>(POLLIN | (full ? POLLOUT : 0)));
   if (full) return;
@@ -10,7 +10,7 @@ void GyroServer::enlist(PollSet& set) const {
   set.wake_at(drivers::Clock::Instant(now - now % every_ + every_));
 }
 
-void GyroServer::serve(const PollSet&) {
+void GyroServer::serve(const drivers::PollSet&) {
   if (!far_end_.plugged()) return terminal_.unplug();
   if (!terminal_.plug()) return;  // At the next turn, perhaps.
   const bool heard = terminal_.in_use();

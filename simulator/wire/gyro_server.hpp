@@ -22,8 +22,8 @@ class GyroServer final : public Server {
         every_(every),
         buffer_(kFramesAtOnce * device.frame_bytes) {}
 
-  void enlist(PollSet& set) const override;
-  void serve(const PollSet& happened) override;
+  void enlist(drivers::PollSet& set) const override;
+  void serve(const drivers::PollSet& happened) override;
 
  private:
   static constexpr std::size_t kFramesAtOnce = 64;

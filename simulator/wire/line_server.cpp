@@ -4,13 +4,13 @@
 
 namespace fogbench::simulator {
 
-void LineServer::enlist(PollSet& set) const {
+void LineServer::enlist(drivers::PollSet& set) const {
   terminal_.enlist(set, static_cast<short>(POLLIN | (output_.empty() ? 0 : POLLOUT)));
   const auto now = clock_.now().time_since_epoch();
   set.wake_at(drivers::Clock::Instant(now - now % every_ + every_));
 }
 
-void LineServer::serve(const PollSet& /*happened*/) {
+void LineServer::serve(const drivers::PollSet& /*happened*/) {
   if (!far_end_.plugged()) return terminal_.unplug();
   if (!terminal_.plug()) return;  // At the next turn, perhaps.
   Bytes commands;

@@ -16,8 +16,8 @@ class LineServer final : public Server {
              drivers::Clock::Duration every)
       : terminal_(std::move(terminal)), far_end_(far_end), clock_(clock), every_(every) {}
 
-  void enlist(PollSet& set) const override;
-  void serve(const PollSet& happened) override;
+  void enlist(drivers::PollSet& set) const override;
+  void serve(const drivers::PollSet& happened) override;
 
  private:
   PseudoTerminal terminal_;

@@ -14,7 +14,7 @@ constexpr std::size_t kLongestFrame = 256;
 
 }  // namespace
 
-void ModbusRtuServer::enlist(PollSet& set) const {
+void ModbusRtuServer::enlist(drivers::PollSet& set) const {
   terminal_.enlist(set, POLLIN);
   if (!answer_.empty()) {
     set.wake_at(due_);
@@ -28,7 +28,7 @@ void ModbusRtuServer::forget() {
   answer_.clear();
 }
 
-void ModbusRtuServer::serve(const PollSet&) {
+void ModbusRtuServer::serve(const drivers::PollSet&) {
   if (!unit_.plugged()) {
     forget();
     return terminal_.unplug();

@@ -13,8 +13,8 @@ class ModbusRtuServer final : public Server {
   ModbusRtuServer(PseudoTerminal terminal, ModbusUnit& unit, const drivers::Clock& clock)
       : terminal_(std::move(terminal)), unit_(unit), clock_(clock) {}
 
-  void enlist(PollSet& set) const override;
-  void serve(const PollSet& happened) override;
+  void enlist(drivers::PollSet& set) const override;
+  void serve(const drivers::PollSet& happened) override;
 
  private:
   /// Sends the answer on its way and takes the next frame; false when there is nothing to do now.

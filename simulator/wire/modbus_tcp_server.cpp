@@ -2,7 +2,7 @@
 
 namespace fogbench::simulator {
 
-void ModbusTcpServer::enlist(PollSet& set) const {
+void ModbusTcpServer::enlist(drivers::PollSet& set) const {
   if (listener_) listener_->enlist(set);
   for (const Client& client : clients_) {
     client.connection.enlist(set);
@@ -15,7 +15,7 @@ void ModbusTcpServer::enlist(PollSet& set) const {
   }
 }
 
-void ModbusTcpServer::serve(const PollSet& happened) {
+void ModbusTcpServer::serve(const drivers::PollSet& happened) {
   if (!unit_.plugged()) {
     clients_.clear();
     listener_.reset();
@@ -29,13 +29,13 @@ void ModbusTcpServer::serve(const PollSet& happened) {
   for (auto client = clients_.begin(); client != clients_.end();) {
     client = serve(*client, happened) ? std::next(client) : clients_.erase(client);
   }
-  while (FileDescriptor descriptor = listener_->accept()) {
+  while (drivers::FileDescriptor descriptor = listener_->accept()) {
     // One too many is closed at once.
     if (clients_.size() < kMostConnections) clients_.emplace_back(std::move(descriptor));
   }
 }
 
-bool ModbusTcpServer::serve(Client& client, const PollSet& happened) {
+bool ModbusTcpServer::serve(Client& client, const drivers::PollSet& happened) {
   Connection& connection = client.connection;
   if (!connection.receive(happened) || !connection.flush()) return false;
   while (!connection.congested()) {

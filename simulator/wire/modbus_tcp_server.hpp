@@ -24,12 +24,13 @@ class ModbusTcpServer final : public Server {
         unit_(unit),
         clock_(clock) {}
 
-  void enlist(PollSet& set) const override;
-  void serve(const PollSet& happened) override;
+  void enlist(drivers::PollSet& set) const override;
+  void serve(const drivers::PollSet& happened) override;
 
  private:
   struct Client {
-    explicit Client(FileDescriptor descriptor) : connection(std::move(descriptor), kMostInput) {}
+    explicit Client(drivers::FileDescriptor descriptor)
+        : connection(std::move(descriptor), kMostInput) {}
     static constexpr std::size_t kMostInput = 1024;
     Connection connection;
     Bytes answer;  ///< on its way until `due`
@@ -37,7 +38,7 @@ class ModbusTcpServer final : public Server {
   };
 
   /// False when the connection is to be closed.
-  bool serve(Client& client, const PollSet& happened);
+  bool serve(Client& client, const drivers::PollSet& happened);
   /// False when it pulled the plug.
   bool execute(Client& client, const ModbusFrame& frame);
 

@@ -25,7 +25,7 @@ void PseudoTerminal::unplug() {
   if (!ours_) return;
   std::error_code ignored;
   std::filesystem::remove(link_, ignored);
-  ours_ = FileDescriptor();
+  ours_ = drivers::FileDescriptor();
 }
 
 Status PseudoTerminal::plug() {
@@ -34,7 +34,7 @@ Status PseudoTerminal::plug() {
     return Error{ErrorCode::kDevice,
                  fmt::format("tty:{}: cannot be made: {}", link_.string(), why)};
   };
-  FileDescriptor master(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  drivers::FileDescriptor master(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   std::array<char, 64> name{};
   if (!master || grantpt(master.get()) != 0 || unlockpt(master.get()) != 0 ||
       ptsname_r(master.get(), name.data(), name.size()) != 0) {
@@ -52,7 +52,8 @@ Status PseudoTerminal::plug() {
 
 bool PseudoTerminal::make_fresh() {
   // The host's side, for a moment: only once it has been closed does ours say that it is.
-  const FileDescriptor theirs(::open(name_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  const drivers::FileDescriptor theirs(
+      ::open(name_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!theirs) return false;
   termios settings{};
   if (tcgetattr(theirs.get(), &settings) == 0) {
@@ -79,7 +80,7 @@ bool PseudoTerminal::in_use(Bytes* last_words, std::size_t most) {
   return used;
 }
 
-void PseudoTerminal::enlist(PollSet& set, short events) const {
+void PseudoTerminal::enlist(drivers::PollSet& set, short events) const {
   // One that nobody has open would wake the loop without end.
   if (was_in_use_) set.add(ours_.get(), events);
 }

@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "config/result.hpp"
+#include "drivers/file_descriptor.hpp"
 #include "simulator/wire/bytes.hpp"
 #include "simulator/wire/event_loop.hpp"
-#include "simulator/wire/file_descriptor.hpp"
 
 namespace fogbench::simulator {
 
@@ -32,7 +32,7 @@ class PseudoTerminal {
   /// Whether a host has it open. When the last one has closed it, what it said before is appended
   /// to `last_words`, where given, up to `most` bytes in all, and what it left unread is forgotten.
   bool in_use(Bytes* last_words = nullptr, std::size_t most = 0);
-  void enlist(PollSet& set, short events) const;
+  void enlist(drivers::PollSet& set, short events) const;
   /// Appends what the host has sent, up to `most` bytes in all.
   void receive(Bytes& input, std::size_t most);
   /// How many of the bytes went out; 0 when the line is full.
@@ -44,7 +44,7 @@ class PseudoTerminal {
   bool make_fresh();
 
   std::filesystem::path link_;
-  FileDescriptor ours_;
+  drivers::FileDescriptor ours_;
   std::string name_;  ///< "/dev/pts/3"
   bool was_in_use_ = false;
 };

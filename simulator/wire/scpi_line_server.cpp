@@ -14,7 +14,7 @@ constexpr drivers::Clock::Duration kLinePatience = 1s;
 
 }  // namespace
 
-void ScpiLineServer::enlist(PollSet& set) const {
+void ScpiLineServer::enlist(drivers::PollSet& set) const {
   terminal_.enlist(set, POLLIN);
   if (!answer_.empty() || !input_.empty()) {
     if (clock_.now() < ready_at_) set.wake_at(ready_at_);
@@ -26,7 +26,7 @@ void ScpiLineServer::forget() {
   answer_.clear();
 }
 
-void ScpiLineServer::serve(const PollSet&) {
+void ScpiLineServer::serve(const drivers::PollSet&) {
   if (!far_end_.plugged()) {
     forget();
     return terminal_.unplug();

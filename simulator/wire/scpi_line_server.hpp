@@ -16,8 +16,8 @@ class ScpiLineServer final : public Server {
   ScpiLineServer(PseudoTerminal terminal, ScpiFarEnd& far_end, DeferringClock& clock)
       : terminal_(std::move(terminal)), far_end_(far_end), clock_(clock) {}
 
-  void enlist(PollSet& set) const override;
-  void serve(const PollSet& happened) override;
+  void enlist(drivers::PollSet& set) const override;
+  void serve(const drivers::PollSet& happened) override;
 
  private:
   /// The next whole line, executed; false when there is none or the instrument is busy.

@@ -22,7 +22,7 @@ Result<TcpListener> TcpListener::open(const std::string& address, std::uint16_t 
   if (inet_pton(AF_INET, address.c_str(), &where.sin_addr) != 1) {
     return failed("an IPv4 address in numbers was expected, such as 127.0.0.1");
   }
-  FileDescriptor listener(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  drivers::FileDescriptor listener(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!listener) return failed(std::strerror(errno));
   const int yes = 1;
   setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -36,8 +36,8 @@ Result<TcpListener> TcpListener::open(const std::string& address, std::uint16_t 
   return TcpListener(std::move(listener), ntohs(where.sin_port));
 }
 
-FileDescriptor TcpListener::accept() {
-  FileDescriptor taken(
+drivers::FileDescriptor TcpListener::accept() {
+  drivers::FileDescriptor taken(
       ::accept4(descriptor_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   const int yes = 1;
   if (taken) setsockopt(taken.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);

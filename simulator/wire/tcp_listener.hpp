@@ -4,8 +4,8 @@
 #include <string>
 
 #include "config/result.hpp"
+#include "drivers/file_descriptor.hpp"
 #include "simulator/wire/event_loop.hpp"
-#include "simulator/wire/file_descriptor.hpp"
 
 namespace fogbench::simulator {
 
@@ -17,15 +17,15 @@ class TcpListener {
   static Result<TcpListener> open(const std::string& address, std::uint16_t port);
 
   std::uint16_t port() const { return port_; }
-  void enlist(PollSet& set) const { set.add(descriptor_.get(), POLLIN); }
+  void enlist(drivers::PollSet& set) const { set.add(descriptor_.get(), POLLIN); }
   /// The next connection, which does not block and sends without delay; empty when there is none.
-  FileDescriptor accept();
+  drivers::FileDescriptor accept();
 
  private:
-  TcpListener(FileDescriptor descriptor, std::uint16_t port)
+  TcpListener(drivers::FileDescriptor descriptor, std::uint16_t port)
       : descriptor_(std::move(descriptor)), port_(port) {}
 
-  FileDescriptor descriptor_;
+  drivers::FileDescriptor descriptor_;
   std::uint16_t port_ = 0;
 };
 

@@ -20,7 +20,7 @@ UsbipDevice describe(const ExportedDevice& exported, std::size_t index) {
 
 }  // namespace
 
-void UsbipServer::enlist(PollSet& set) const {
+void UsbipServer::enlist(drivers::PollSet& set) const {
   listener_.enlist(set);
   for (const Host& host : hosts_) {
     host.connection.enlist(set);
@@ -28,7 +28,7 @@ void UsbipServer::enlist(PollSet& set) const {
   }
 }
 
-void UsbipServer::serve(const PollSet& happened) {
+void UsbipServer::serve(const drivers::PollSet& happened) {
   for (auto host = hosts_.begin(); host != hosts_.end();) {
     host = serve(*host, happened) ? std::next(host) : hosts_.erase(host);
   }
@@ -36,13 +36,13 @@ void UsbipServer::serve(const PollSet& happened) {
 }
 
 void UsbipServer::accept() {
-  while (FileDescriptor descriptor = listener_.accept()) {
+  while (drivers::FileDescriptor descriptor = listener_.accept()) {
     // One too many is closed at once.
     if (hosts_.size() < kMostConnections) hosts_.emplace_back(std::move(descriptor));
   }
 }
 
-bool UsbipServer::serve(Host& host, const PollSet& happened) {
+bool UsbipServer::serve(Host& host, const drivers::PollSet& happened) {
   if (host.device != nullptr && !host.device->plugged()) return false;
   if (!host.connection.receive(happened) || !host.connection.flush()) return false;
   if (host.closing) return host.connection.unsent() > 0;

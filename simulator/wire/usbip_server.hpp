@@ -28,12 +28,12 @@ class UsbipServer final : public Server {
   UsbipServer(TcpListener listener, std::vector<ExportedDevice> devices)
       : listener_(std::move(listener)), devices_(std::move(devices)) {}
 
-  void enlist(PollSet& set) const override;
-  void serve(const PollSet& happened) override;
+  void enlist(drivers::PollSet& set) const override;
+  void serve(const drivers::PollSet& happened) override;
 
  private:
   struct Host {
-    explicit Host(FileDescriptor descriptor)
+    explicit Host(drivers::FileDescriptor descriptor)
         : connection(std::move(descriptor), kUsbipHeaderBytes + kMostTransferBytes) {}
     Connection connection;
     UsbDevice* device = nullptr;  ///< imported
@@ -43,7 +43,7 @@ class UsbipServer final : public Server {
 
   void accept();
   /// False when the connection is to be closed.
-  bool serve(Host& host, const PollSet& happened);
+  bool serve(Host& host, const drivers::PollSet& happened);
   bool answer_requests(Host& host);
   bool import(Host& host, const std::string& bus_id);
   bool take_commands(Host& host);

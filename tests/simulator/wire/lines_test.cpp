@@ -65,7 +65,7 @@ class Line {
   }
 
  private:
-  FileDescriptor descriptor_;
+  drivers::FileDescriptor descriptor_;
 };
 
 class LinesTest : public ServedBenchTest {

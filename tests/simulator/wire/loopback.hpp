@@ -11,7 +11,7 @@
 #include <atomic>
 #include <thread>
 
-#include "simulator/wire/file_descriptor.hpp"
+#include "drivers/file_descriptor.hpp"
 #include "simulator/wire/served_bench.hpp"
 #include "tests/simulator/test_bench.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -79,7 +79,7 @@ class Wire {
   }
 
  private:
-  FileDescriptor socket_;
+  drivers::FileDescriptor socket_;
   bool connected_ = false;
 };
 
@@ -127,7 +127,7 @@ class ServedBenchTest : public testing::Test {
 
   support::TemporaryFolder folder_;
   JumpingClock clock_;
-  FileDescriptor stop_{eventfd(0, EFD_CLOEXEC)};
+  drivers::FileDescriptor stop_{eventfd(0, EFD_CLOEXEC)};
   std::unique_ptr<ServedBench> bench_;
   Status status_;
   std::thread thread_;

@@ -30,16 +30,16 @@ ControlServer::ControlServer(PacketListener listener, const config::BenchConfig&
   }
 }
 
-void ControlServer::enlist(simulator::PollSet& set) const {
+void ControlServer::enlist(drivers::PollSet& set) const {
   listener_.enlist(set);
-  for (const simulator::FileDescriptor& client : clients_) set.add(client.get(), POLLIN);
+  for (const drivers::FileDescriptor& client : clients_) set.add(client.get(), POLLIN);
 }
 
-void ControlServer::serve(const simulator::PollSet&) {
-  while (simulator::FileDescriptor client = listener_.accept()) {
+void ControlServer::serve(const drivers::PollSet&) {
+  while (drivers::FileDescriptor client = listener_.accept()) {
     clients_.push_back(std::move(client));
   }
-  std::erase_if(clients_, [&](const simulator::FileDescriptor& client) {
+  std::erase_if(clients_, [&](const drivers::FileDescriptor& client) {
     std::array<char, 256> request;
     const ssize_t count = recv(client.get(), request.data(), request.size(), MSG_DONTWAIT);
     if (count < 0) return errno != EAGAIN;

@@ -27,8 +27,8 @@ class ControlServer final : public simulator::Server {
   ControlServer(PacketListener listener, const config::BenchConfig& config,
                 simulator::FarEnds& ends, const drivers::Clock& clock);
 
-  void enlist(simulator::PollSet& set) const override;
-  void serve(const simulator::PollSet& happened) override;
+  void enlist(drivers::PollSet& set) const override;
+  void serve(const drivers::PollSet& happened) override;
 
  private:
   /// What a supply was told, and when, in seconds since the far ends' power-on.
@@ -46,7 +46,7 @@ class ControlServer final : public simulator::Server {
   simulator::FarEnds& ends_;
   const drivers::Clock& clock_;
   std::map<std::string, Heard> heard_;
-  std::list<simulator::FileDescriptor> clients_;
+  std::list<drivers::FileDescriptor> clients_;
 };
 
 }  // namespace fogbench::far_bench

@@ -60,7 +60,7 @@ Status serve(const fs::path& folder, double boost) {
                                                 (*bench)->clock()));
   fmt::print("ready {}\n", (*bench)->usbip_port());
   std::fflush(stdout);
-  const simulator::FileDescriptor never(eventfd(0, EFD_CLOEXEC));
+  const drivers::FileDescriptor never(eventfd(0, EFD_CLOEXEC));
   return (*bench)->run(never.get());
 }
 

@@ -14,8 +14,7 @@ std::optional<PacketListener> PacketListener::open(const std::filesystem::path& 
   path.string().copy(address.sun_path, sizeof address.sun_path - 1);
   std::error_code ignored;
   std::filesystem::remove(path, ignored);
-  simulator::FileDescriptor made(
-      ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  drivers::FileDescriptor made(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   constexpr int kWaiting = 8;
   if (!made || bind(made.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
       listen(made.get(), kWaiting) != 0) {
@@ -29,8 +28,8 @@ PacketListener::~PacketListener() {
   if (descriptor_) std::filesystem::remove(path_, ignored);
 }
 
-simulator::FileDescriptor PacketListener::accept() const {
-  return simulator::FileDescriptor(
+drivers::FileDescriptor PacketListener::accept() const {
+  return drivers::FileDescriptor(
       accept4(descriptor_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
 }
 

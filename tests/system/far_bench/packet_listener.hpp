@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "drivers/file_descriptor.hpp"
 #include "simulator/wire/event_loop.hpp"
-#include "simulator/wire/file_descriptor.hpp"
 
 namespace fogbench::far_bench {
 
@@ -18,15 +18,15 @@ class PacketListener {
   /// Nobody finds it any more.
   ~PacketListener();
 
-  void enlist(simulator::PollSet& set) const { set.add(descriptor_.get(), POLLIN); }
+  void enlist(drivers::PollSet& set) const { set.add(descriptor_.get(), POLLIN); }
   /// The next connection, which does not block; empty when there is none.
-  simulator::FileDescriptor accept() const;
+  drivers::FileDescriptor accept() const;
 
  private:
-  PacketListener(simulator::FileDescriptor descriptor, std::filesystem::path path)
+  PacketListener(drivers::FileDescriptor descriptor, std::filesystem::path path)
       : descriptor_(std::move(descriptor)), path_(std::move(path)) {}
 
-  simulator::FileDescriptor descriptor_;
+  drivers::FileDescriptor descriptor_;
   std::filesystem::path path_;
 };
 
