@@ -21,7 +21,7 @@ Error unknown(const std::string& where, std::string_view what, const std::string
                fmt::format("{}: unknown {} \"{}\"; {}", where, what, name, hint)};
 }
 
-Error unknown_effect(const std::string& where, const std::string& name) {
+Error no_such_effect(const std::string& where, const std::string& name) {
   std::vector<std::string> names;
   for (const EffectEntry& entry : all_effects()) {
     names.push_back(entry.of_a_channel ? entry.id + "(CHANNEL)" : entry.id);
@@ -45,7 +45,7 @@ Status check_domain(const std::string& where, const EffectParameter& parameter, 
 
 Status HiddenEffects::add(const config::HiddenEffect& hidden, const std::string& where) {
   const std::optional<NamedEffect> found = find_effect(hidden.effect);
-  if (!found) return unknown_effect(where, hidden.effect);
+  if (!found) return no_such_effect(where, hidden.effect);
   const EffectEntry& entry = *found->entry;
 
   std::vector<std::string_view> known;

@@ -38,7 +38,7 @@ class Detector {
   const Eigen::VectorXd& observed() const { return observed_; }
   /// The best point of the candidate's grid.
   const Block& best_block(Eigen::Index candidate) const;
-  /// Every block projects to nothing on this base.
+  /// Not so when every block projects to nothing beside this base.
   bool testable(Eigen::Index candidate) const;
   /// Lambda of any columns (not of the library).
   double lambda_of(const Eigen::MatrixXd& columns) const;

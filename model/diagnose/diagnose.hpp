@@ -2,7 +2,7 @@
 // What is missing in an error model, how sure that is, or that nothing is: the whole diagnosis.
 //
 //   fit the model -> is what is left more than noise? -> which effect explains it (search.hpp)
-//   -> is what is then left noise? (smooth functions of every variable, at 1 %)
+//   -> is what is then left noise? (smooth functions of every variable: adequacy.hpp)
 //   -> adequate | missing_effect | ambiguous | unexplained
 
 #include <functional>

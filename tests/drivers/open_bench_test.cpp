@@ -162,6 +162,7 @@ TEST_F(OpenBenchTest, ATurntableOfTheOperatorsHandNeedsNoTransport) {
   Transports transports = connect();
   transports.turntable.reset();
   config_.turntable.motorised = false;
+  config_.turntable.device.reset();
   const auto bench = open_bench(config_, std::move(transports), clock_, nobody_);
   ASSERT_TRUE(bench) << bench.error().message;
   EXPECT_EQ(bench->turntable->rotate_to(Degree{90.0}).error().code, ErrorCode::kAborted);
