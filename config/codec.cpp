@@ -103,10 +103,10 @@ bool ObjectReader::finish() {
   if (!open_) {
     for (const auto& [key, member] : at_.value().items()) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-      const std::string_view near = nearest_name(key, known_);
+      const std::string meant = did_you_mean(key, known_);
       ok_ = (at_ / key).fail(
-          near.empty() ? fmt::format("unknown key; expected one of {}", fmt::join(known_, ", "))
-                       : fmt::format("unknown key; did you mean \"{}\"?", near));
+          "unknown key" +
+          (meant.empty() ? fmt::format("; expected one of {}", fmt::join(known_, ", ")) : meant));
     }
   }
   for (const Missing& missing : missing_) {

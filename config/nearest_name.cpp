@@ -1,9 +1,19 @@
 #include "config/nearest_name.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 namespace fogbench::config {
+namespace {
+
+/// Fewer letters are a part of too many names, and more names are no answer.
+constexpr std::size_t kLeastPart = 3, kMostNames = 8;
+
+}  // namespace
 
 std::size_t edits_between(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -32,6 +42,28 @@ std::string_view nearest_name(std::string_view name, const std::vector<std::stri
     }
   }
   return nearest;
+}
+
+std::vector<std::string_view> names_with(std::string_view name,
+                                         const std::vector<std::string_view>& known) {
+  std::vector<std::string_view> with;
+  if (name.size() < kLeastPart) return with;
+  std::copy_if(known.begin(), known.end(), std::back_inserter(with),
+               [name](std::string_view one) { return one.find(name) != one.npos; });
+  if (with.size() > kMostNames) with.clear();
+  return with;
+}
+
+std::string did_you_mean(std::string_view name, const std::vector<std::string_view>& known) {
+  std::vector<std::string_view> meant;
+  if (const std::string_view near = nearest_name(name, known); !near.empty()) {
+    meant.push_back(near);
+  } else {
+    meant = names_with(name, known);
+  }
+  if (meant.empty()) return "";
+  return fmt::format("; did you mean {}\"{}\"?", meant.size() > 1 ? "one of " : "",
+                     fmt::join(meant, "\", \""));
 }
 
 }  // namespace fogbench::config

@@ -7,12 +7,15 @@
 #include <system_error>
 #include <vector>
 
+#include "config/nearest_name.hpp"
+
 namespace fogbench::config {
 namespace fs = std::filesystem;
 
 namespace {
 
-std::string names_in(const fs::path& folder) {
+/// In order of the alphabet.
+std::vector<std::string> names_in(const fs::path& folder) {
   std::error_code error;
   std::vector<std::string> known;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
@@ -20,7 +23,14 @@ std::string names_in(const fs::path& folder) {
     if (entry->path().extension() == ".json") known.push_back(entry->path().stem().string());
   }
   std::sort(known.begin(), known.end());
-  return fmt::format("{}", fmt::join(known, ", "));
+  return known;
+}
+
+/// "none of the ready scenarios (...)", and which of them was probably meant by `name`.
+std::string none_of_ready(const fs::path& folder, std::string_view name) {
+  const std::vector<std::string> known = names_in(folder);
+  return fmt::format("none of the ready {} ({}){}", folder.filename().string(),
+                     fmt::join(known, ", "), did_you_mean(name, {known.begin(), known.end()}));
 }
 
 }  // namespace
@@ -50,7 +60,8 @@ Result<fs::path> config_directory() {
 
 std::string ready_names(const std::string& kind) {
   const auto directory = config_directory();
-  return directory ? names_in(*directory / kind) : std::string();
+  if (!directory) return "";
+  return fmt::format("{}", fmt::join(names_in(*directory / kind), ", "));
 }
 
 Result<fs::path> find_ready(const std::string& kind, const std::string& name) {
@@ -61,8 +72,7 @@ Result<fs::path> find_ready(const std::string& kind, const std::string& name) {
   std::error_code error;
   const bool plain = name.find('/') == std::string::npos;
   if (plain && fs::is_regular_file(candidate, error)) return candidate;
-  return Error{ErrorCode::kBadInput,
-               fmt::format("{}: none of the ready {} ({})", name, kind, names_in(folder))};
+  return Error{ErrorCode::kBadInput, fmt::format("{}: {}", name, none_of_ready(folder, name))};
 }
 
 Result<fs::path> find_config(const std::string& kind, const std::string& name) {
@@ -82,8 +92,8 @@ Result<fs::path> find_config(const std::string& kind, const std::string& name) {
     return Error{ErrorCode::kBadInput, fmt::format("{}: {}", name, error.message())};
   }
 
-  return Error{ErrorCode::kBadInput, fmt::format("{}: no such file, and none of the ready {} ({})",
-                                                 name, kind, names_in(*directory / kind))};
+  return Error{ErrorCode::kBadInput, fmt::format("{}: no such file, and {}", name,
+                                                 none_of_ready(*directory / kind, name))};
 }
 
 }  // namespace fogbench::config

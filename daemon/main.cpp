@@ -16,6 +16,7 @@
 #include "daemon/abort_on_signal.hpp"
 #include "daemon/access.hpp"
 #include "daemon/manual.hpp"
+#include "daemon/mistyped.hpp"
 #include "daemon/run_options.hpp"
 #include "daemon/serve.hpp"
 #include "daemon/session.hpp"
@@ -175,6 +176,10 @@ Status run(const DaemonOptions& options) {
     if (end.outcome == procedures::RunOutcome::kAborted) return Error{ErrorCode::kAborted, says};
     if (end.outcome == procedures::RunOutcome::kFailed) return Error{ErrorCode::kDevice, says};
     spdlog::info(says);
+    if (summary->points > 0) {
+      spdlog::info("next: fogbench verdict {0}{1}, fogbench passport {0}{1} -o passport-{0}.html",
+                   summary->run, options.store.empty() ? "" : " --store " + options.store);
+    }
   }
   return {};
 }
@@ -201,7 +206,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& help) {  // --help, --version
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "fogbenchd: {} (see fogbenchd --help)\n", error.what());
+    fmt::print(stderr, "fogbenchd: {}\n",
+               fogbench::daemon::mistyped(app, {argv + 1, argv + argc}, error));
     return static_cast<int>(ExitStatus::kUsage);
   }
   // Nothing of ours throws, and the engine leaves no run without the safe state; what a library may

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/nearest_name.hpp"
 #include "procedures/branches.hpp"
 
 namespace fogbench::procedures {
@@ -43,8 +44,11 @@ Result<Parameters> bind_parameters(const ProcedureConfig& procedure, const Param
     if (found == bound.end()) {
       Parameters known = procedure.parameters;
       for (const std::string& one : passed) known.emplace(one, 0.0);
-      return config::bad_input(fmt::format("{}: procedure {} has no parameter \"{}\" ({})", where,
-                                           procedure.name, name, names_of(known)));
+      std::vector<std::string_view> names;
+      for (const auto& parameter : known) names.push_back(parameter.first);
+      return config::bad_input(fmt::format("{}: procedure {} has no parameter \"{}\" ({}){}", where,
+                                           procedure.name, name, names_of(known),
+                                           config::did_you_mean(name, names)));
     }
     const bool wants_list = std::holds_alternative<std::vector<double>>(found->second);
     const bool is_list = std::holds_alternative<std::vector<double>>(value);

@@ -13,12 +13,12 @@ namespace {
 
 Error unknown(const std::string& where, std::string_view what, const std::string& name,
               const std::vector<std::string_view>& known) {
-  const std::string_view near = config::nearest_name(name, known);
-  const std::string hint = known.empty()  ? "it takes none"
-                           : near.empty() ? fmt::format("known: {}", fmt::join(known, ", "))
-                                          : fmt::format("did you mean \"{}\"?", near);
+  std::string hint = config::did_you_mean(name, known);
+  if (hint.empty()) {
+    hint = known.empty() ? "; it takes none" : fmt::format("; known: {}", fmt::join(known, ", "));
+  }
   return Error{ErrorCode::kBadInput,
-               fmt::format("{}: unknown {} \"{}\"; {}", where, what, name, hint)};
+               fmt::format("{}: unknown {} \"{}\"{}", where, what, name, hint)};
 }
 
 Error no_such_effect(const std::string& where, const std::string& name) {

@@ -52,15 +52,12 @@ bool is_field_sensitivity(std::string_view id) {
 }
 
 std::string unknown_effect(std::string_view id) {
-  const std::string_view asked = id.substr(0, 80);
-  std::vector<std::pair<std::size_t, std::string_view>> nearest;
-  for (const Effect* effect : catalogue()) {
-    nearest.emplace_back(config::edits_between(asked, effect->info().id), effect->info().id);
-  }
-  std::stable_sort(nearest.begin(), nearest.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  return fmt::format("unknown effect '{}', the nearest are {}, {} and {}", asked, nearest[0].second,
-                     nearest[1].second, nearest[2].second);
+  const std::string_view asked = id.substr(0, 64);
+  std::vector<std::string_view> known;
+  for (const Effect* effect : catalogue()) known.push_back(effect->info().id);
+  const std::string meant = config::did_you_mean(asked, known);
+  return fmt::format("unknown effect '{}'{}", asked,
+                     meant.empty() ? "; fogbench effects lists them" : meant);
 }
 
 }  // namespace fogbench::model

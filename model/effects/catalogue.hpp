@@ -15,7 +15,7 @@ namespace fogbench::model {
 std::span<const Effect* const> catalogue();
 /// Null when there is no such effect.
 const Effect* find_effect(std::string_view id);
-/// "unknown effect 'x', the nearest are u, v and w", of the catalogue.
+/// "unknown effect 'x'", and which of the catalogue was probably meant: one, or a family.
 std::string unknown_effect(std::string_view id);
 /// The effect scales with the shield (EffectInfo::field_sensitivity); false for other names.
 bool is_field_sensitivity(std::string_view id);

@@ -1,11 +1,16 @@
 #include "model/effects/expression.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <muParser.h>
 
+#include <algorithm>
+#include <cctype>
 #include <limits>
 #include <numbers>
 #include <string_view>
+
+#include "config/nearest_name.hpp"
 
 namespace fogbench::model {
 namespace {
@@ -29,12 +34,46 @@ bool assigns(std::string_view text) {
   return false;
 }
 
+/// A name with "(" behind it that is no function: the parser would call it a variable, or only the
+/// bracket unexpected. Empty when there is none.
+std::string unknown_function(std::string_view text) {
+  const std::vector<std::string>& known = expression_functions();
+  const auto of_name = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+  };
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() && of_name(text[end])) ++end;
+    const std::string_view name = text.substr(at, end - at);
+    at = std::max(end, at + 1);
+    while (end < text.size() && text[end] == ' ') ++end;
+    if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) || end == text.size() ||
+        text[end] != '(' || std::find(known.begin(), known.end(), name) != known.end()) {
+      continue;
+    }
+    return fmt::format("unknown function {}{}; the functions are {}", name,
+                       config::did_you_mean(name, {known.begin(), known.end()}),
+                       fmt::join(known, ", "));
+  }
+  return "";
+}
+
 /// For GetUsedVar, which wants an address for every name.
 double* any_variable(const char*, void* place) {
   return static_cast<double*>(place);
 }
 
 }  // namespace
+
+const std::vector<std::string>& expression_functions() {
+  static const std::vector<std::string> kNames = [] {
+    const mu::Parser parser;
+    std::vector<std::string> names;
+    for (const auto& [name, function] : parser.GetFunDef()) names.push_back(name);
+    return names;
+  }();
+  return kNames;
+}
 
 Result<Expression> Expression::parse(const std::string& term, const std::string& text,
                                      const std::set<std::string>& parameters,
@@ -46,6 +85,9 @@ Result<Expression> Expression::parse(const std::string& term, const std::string&
   const std::string shown = text.size() > kShown ? text.substr(0, kShown) + "..." : text;
   if (assigns(text)) {
     return bad(fmt::format("found an assignment in '{}', expected a formula; equal is ==", shown));
+  }
+  if (const std::string unknown = unknown_function(text); !unknown.empty()) {
+    return bad(fmt::format("{} ('{}')", unknown, shown));
   }
   Expression expression;
   expression.text_ = text;
@@ -78,10 +120,13 @@ Result<Expression> Expression::parse(const std::string& term, const std::string&
     } else if (is_signal) {
       expression.signals_.push_back(name);
     } else {
-      return bad(
-          fmt::format("found the name '{}' in '{}', expected a column or one of the term's "
-                      "parameters ({})",
-                      name, shown, signals.table().why_missing(name)));
+      const std::vector<std::string> columns = signals.table().column_names();
+      std::vector<std::string_view> known(columns.begin(), columns.end());
+      known.insert(known.end(), parameters.begin(), parameters.end());
+      return bad(fmt::format(
+          "found the name '{}' in '{}', expected a column or one of the term's "
+          "parameters ({}){}",
+          name, shown, signals.table().why_missing(name), config::did_you_mean(name, known)));
     }
   }
   expression.parser_ = std::make_shared<mu::Parser>();

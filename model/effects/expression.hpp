@@ -23,6 +23,9 @@ class Parser;
 
 namespace fogbench::model {
 
+/// The names of the functions that a formula may call, in order.
+const std::vector<std::string>& expression_functions();
+
 /// Not thread-safe: copies share one parser.
 class Expression {
  public:

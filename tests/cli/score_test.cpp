@@ -86,7 +86,7 @@ TEST(AnswerFrom, RefusesWhatCannotBeAnAnswer) {
     const auto refused = answer_from(effects);
     return refused ? "accepted" : refused.error().message;
   };
-  EXPECT_THAT(message({"warm_upp"}), HasSubstr("the nearest are warm_up"));
+  EXPECT_THAT(message({"warm_upp"}), HasSubstr("did you mean \"warm_up\"?"));
   EXPECT_THAT(message({"nothing", "warm_up"}), HasSubstr("nothing beside an effect"));
   EXPECT_THAT(message({"warm_up", "warm_up"}), HasSubstr("twice"));
 }

@@ -20,5 +20,16 @@ TEST(NearestName, IsWithinAThirdOfTheLetters) {
   EXPECT_EQ(nearest_name("", known), "");
 }
 
+TEST(DidYouMean, OffersTheNearestOrTheFamilyOrNothing) {
+  const std::vector<std::string_view> known = {"magnetic_hysteresis_x", "temperature_hysteresis",
+                                               "bias", "maximum"};
+  EXPECT_EQ(did_you_mean("bais", known), "; did you mean \"bias\"?");
+  EXPECT_EQ(did_you_mean("max", known), "; did you mean \"maximum\"?");
+  EXPECT_EQ(did_you_mean("hysteresis", known),
+            "; did you mean one of \"magnetic_hysteresis_x\", \"temperature_hysteresis\"?");
+  EXPECT_EQ(did_you_mean("frequency", known), "");
+  EXPECT_EQ(did_you_mean("", known), "");
+}
+
 }  // namespace
 }  // namespace fogbench::config

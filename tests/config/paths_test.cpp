@@ -66,7 +66,8 @@ TEST(Paths, UnknownNameListsTheKnownOnes) {
   EXPECT_THAT(
       message_of(find_config("benches", "simulate")),
       HasSubstr("simulate: no such file, and none of the ready benches (factory, simulated, "
-                "simulated-1khz, simulated-auxiliary, simulated-chamber)"));
+                "simulated-1khz, simulated-auxiliary, simulated-chamber); did you mean "
+                "\"simulated\"?"));
 }
 
 TEST(Paths, WhatIsNoFileIsSaidToBeWhatItIs) {

@@ -40,5 +40,19 @@ TEST_F(ExpressionTest, TakesParametersInTheirOrder) {
   EXPECT_EQ(result, (Eigen::VectorXd(3) << 10.0, 21.0, 30.0).finished());
 }
 
+TEST_F(ExpressionTest, SaysWhichFunctionIsUnknownAndWhichAreKnown) {
+  const auto message = [this](const std::string& text) { return parse(text).error().message; };
+  EXPECT_NE(message("x * tahn(x / a)").find("unknown function tahn; did you mean \"tan"),
+            std::string::npos)
+      << message("x * tahn(x / a)");
+  EXPECT_NE(message("power (x, 2)").find("the functions are abs, acos, "), std::string::npos);
+  EXPECT_NE(message("x + xx").find("did you mean \"x\"?"), std::string::npos) << message("x + xx");
+  for (const std::string& function : expression_functions()) {
+    const std::string text = function == "atan2" ? "atan2(x, 2)" : function + "(x / 4)";
+    EXPECT_TRUE(parse(text)) << text;
+  }
+  EXPECT_TRUE(parse("2 * (x) + 1e3 * (a)"));
+}
+
 }  // namespace
 }  // namespace fogbench::model

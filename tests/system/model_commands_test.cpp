@@ -74,7 +74,7 @@ TEST_F(ModelCommandsTest, EffectsAndAdd) {
   EXPECT_EQ(document.at("terms"), 6);
   const std::string nothing = path("nothing.json");
   expect_refused(fogbench({"add", "magnetic_histeresis_z", "--model", "magnetic", "-o", nothing}),
-                 3, "the nearest are magnetic_hysteresis_z");
+                 3, "did you mean \"magnetic_hysteresis_z\"?");
   expect_refused(fogbench({"add", "bias", "--model", "magnetic", "-o", nothing}), 3, "already");
   EXPECT_FALSE(std::filesystem::exists(nothing));
 }
