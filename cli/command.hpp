@@ -65,6 +65,7 @@ void add_abort(CLI::App& app, Action& action);
 void add_answer(CLI::App& app, Action& action);
 void add_queue(CLI::App& app, Action& action);
 void add_device(CLI::App& app, Action& action);
+void add_help(CLI::App& app, Action& action);
 /// Of `fogbench device`.
 void add_device_probe(CLI::App& device, Action& action);
 
@@ -74,6 +75,7 @@ inline constexpr void (*kCommands[])(CLI::App& app, Action& action) = {
     add_add,      add_compensate, add_compare, add_diagnose, add_allan,   add_verdict,
     add_passport, add_challenge,  add_reveal,  add_run,      add_status,  add_watch,
     add_pause,    add_resume,     add_abort,   add_answer,   add_queue,   add_device,
+    add_help,
 };
 
 }  // namespace fogbench::cli

@@ -42,7 +42,7 @@ void add_device(CLI::App& app, Action& action) {
       "  fogbench device check my-controller.json\n"
       "  fogbench device check thermostat-eurotherm",
       [](CLI::App& command, CheckOptions& options) {
-        command.add_option("FILE", options.device, "Device file, or the name of a ready one")
+        command.add_option("DEVICE", options.device, "Device file, or the name of a ready one")
             ->required();
         command.add_flag("--json", options.json, "One JSON document on stdout");
       },

@@ -150,7 +150,7 @@ void add_device_probe(CLI::App& device, Action& action) {
       [](CLI::App& command, ProbeOptions& options) {
         command
             .add_option(
-                "FILE", options.device,
+                "DEVICE", options.device,
                 "Device file, or the name of a ready one; with --bench, an instrument of it")
             ->required();
         auto* const where = command.add_option_group("where");

@@ -5,15 +5,16 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <system_error>
 
 #include "cli/command.hpp"
 #include "cli/common_options.hpp"
+#include "cli/completion_words.hpp"
 #include "cli/output.hpp"
 #include "daemon/manual.hpp"
+#include "daemon/mistyped.hpp"
 #include "model/fit/heap.hpp"
 
 namespace {
@@ -25,7 +26,9 @@ constexpr auto kDescription =
 constexpr auto kFooter =
     "Exit status: 0 done, 1 the answer is no, 2 usage, 3 bad input, 4 bench, daemon or run log "
     "failed.\n"
-    "`fogbench COMMAND --help` shows a command's options and examples.";
+    "`fogbench COMMAND --help` shows a command's options and examples, `fogbench help "
+    "expressions`\n"
+    "how a formula of your own is written.";
 
 fogbench::daemon::ManualText manual_text() {
   return {
@@ -64,14 +67,17 @@ int run(int argc, char** argv) {
     return static_cast<int>(ExitStatus::kDone);
   }
 
+  const auto arguments = fogbench::cli::arguments_with_lists(argc, argv);
+  if (const auto words = fogbench::cli::asked_words(app, arguments)) {
+    for (const std::string& word : *words) fmt::print("{}\n", word);
+    return static_cast<int>(ExitStatus::kDone);
+  }
   try {
-    auto arguments = fogbench::cli::arguments_with_lists(argc, argv);
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
-    app.parse(std::move(arguments));
-  } catch (const CLI::Success& help) {  // --help, --version
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // as CLI11 wants it
+  } catch (const CLI::Success& help) {                                          // --help, --version
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    fogbench::cli::print_error(std::string(error.what()) + " (see fogbench --help)");
+    fogbench::cli::print_error(fogbench::daemon::mistyped(app, arguments, error));
     return static_cast<int>(ExitStatus::kUsage);
   }
 

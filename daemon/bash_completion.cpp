@@ -11,16 +11,27 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// What takes the name of a ready file, and of which kind.
-const std::map<std::string, std::string> kReady{{"--bench", "benches"},
-                                                {"--model", "models"},
-                                                {"--scenario", "scenarios"},
-                                                {"PROCEDURE", "procedures"}};
+/// What fills `words` for the value of an option or an argument: the names of the ready files of
+/// one kind, or what the program itself knows.
+const std::map<std::string, std::string> kFilledBy{{"--bench", "_fogbench_ready benches"},
+                                                   {"--candidate", "_fogbench_ready models"},
+                                                   {"--limits", "_fogbench_ready limits"},
+                                                   {"--model", "_fogbench_ready models"},
+                                                   {"--scenario", "_fogbench_ready scenarios"},
+                                                   {"DEVICE", "_fogbench_ready devices"},
+                                                   {"PROCEDURE", "_fogbench_ready procedures"},
+                                                   {"--answer", "_fogbench_ask effects"},
+                                                   {"EFFECT", "_fogbench_ask effects"},
+                                                   {"TOPIC", "_fogbench_ask topics"},
+                                                   {"--quiet", "_fogbench_ask runs"},
+                                                   {"DATA", "_fogbench_ask runs"},
+                                                   {"RUN", "_fogbench_ask runs"},
+                                                   {"--set", "_fogbench_ask parameters"}};
 
 struct Command {
   std::string name;  ///< empty for the program itself, "device probe" for one below another
   Words commands, options;
-  std::string ready;  ///< the kind that its arguments are of
+  std::string filled_by;  ///< for its arguments
 };
 
 /// The values of an option with a choice: "{a,b}" in the name of its type.
@@ -36,10 +47,10 @@ void gather(const CLI::App& app, const std::string& name, std::vector<Command>& 
             std::map<std::string, std::string>& values) {
   Command command{name, {}, {}, {}};
   for (const CLI::Option* option : app.get_options()) {
-    const auto ready =
-        kReady.find(option->get_positional() ? option->get_name(true) : option->get_name());
+    const auto filled_by =
+        kFilledBy.find(option->get_positional() ? option->get_name(true) : option->get_name());
     if (option->get_positional()) {
-      if (ready != kReady.end()) command.ready = ready->second;
+      if (filled_by != kFilledBy.end()) command.filled_by = filled_by->second;
       for (const std::string& choice : choices(*option)) command.commands.push_back(choice);
       continue;
     }
@@ -48,9 +59,9 @@ void gather(const CLI::App& app, const std::string& name, std::vector<Command>& 
     for (const std::string& word : option->get_lnames()) names.push_back("--" + word);
     command.options.insert(command.options.end(), names.begin(), names.end());
     if (option->get_items_expected_max() == 0) continue;
-    const std::string says = ready == kReady.end()
+    const std::string says = filled_by == kFilledBy.end()
                                  ? fmt::format("words=({})", fmt::join(choices(*option), " "))
-                                 : "_fogbench_ready " + ready->second;
+                                 : filled_by->second;
     for (const std::string& one : names) values[one] = says;
   }
   for (const CLI::App* below : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -80,6 +91,12 @@ _fogbench_ready() {{
     return
   done
 }}
+# What the program knows of one kind, with the words typed so far.
+_fogbench_ask() {{
+  local program
+  program=$(type -P "${{COMP_WORDS[0]/#\~/$HOME}}") || return
+  words+=($("$program" --words "$1" "${{COMP_WORDS[@]:1:COMP_CWORD-1}}" 2> /dev/null))
+}}
 _{program}() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}}
   local command='' next i words=() commands=() options=()
@@ -100,6 +117,8 @@ _{program}() {{
   for next in "${{words[@]}}"; do
     [[ $next != "$word"* ]] || COMPREPLY+=("$next")
   done
+  [[ ${{COMPREPLY[*]}} != *= ]] || compopt -o nospace 2> /dev/null
+  return 0
 }}
 complete -o default -F _{program} {program}
 )";
@@ -117,7 +136,7 @@ std::string bash_completion(const CLI::App& app) {
     of_commands += fmt::format("        '{}')\n          commands=({})\n          options=({})\n",
                                command.name, fmt::join(command.commands, " "),
                                fmt::join(command.options, " "));
-    if (!command.ready.empty()) of_commands += "          _fogbench_ready " + command.ready + "\n";
+    if (!command.filled_by.empty()) of_commands += "          " + command.filled_by + "\n";
     of_commands += "          ;;\n";
   }
   // A program without commands has no names; nothing typed is this.

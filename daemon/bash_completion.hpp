@@ -6,7 +6,8 @@
 
 namespace fogbench::daemon {
 
-/// For bash. Commands, options, the values of those that have a choice, the names of ready files.
+/// For bash. Commands, options, the values of those that have a choice, the names of ready files,
+/// and what `fogbench --words KIND` prints: effects, runs, parameters of the procedure on the line.
 std::string bash_completion(const CLI::App& app);
 
 }  // namespace fogbench::daemon

@@ -136,6 +136,14 @@ TEST_F(ServiceTest, CompletionOffersReadyFilesAndChoices) {
       {"dry-run coil-sweep --bench simulated-1", {"simulated-1khz"}},
       {"device ''", {"check", "probe"}},
       {"answer ''", {"no", "yes"}},
+      {"verdict 1 --limits acc", {"acceptance"}},
+      {"device check coil-", {"coil-kepco"}},
+      {"effects warm", {"warm_up"}},
+      {"add magnetic_hysteresis_",
+       {"magnetic_hysteresis_x", "magnetic_hysteresis_y", "magnetic_hysteresis_z"}},
+      {"plan coil-sweep --set lev", {"levels_ut="}},
+      {"help expr", {"expressions"}},
+      {"show ''", {}},       // there is no run log
       {"fit 7 -o fit", {}},  // a file's name is bash's own
       {"fit '$(exit 1)' --mod", {"--model"}}};
   std::vector<std::string> lines;
