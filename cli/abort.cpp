@@ -4,6 +4,7 @@
 
 #include "cli/command.hpp"
 #include "cli/control_client.hpp"
+#include "cli/output.hpp"
 #include "cli/status_text.hpp"
 
 namespace fogbench::cli {
@@ -12,6 +13,7 @@ namespace {
 struct AbortOptions {
   std::string socket;
   bool force = false;
+  bool json = false;
 };
 
 /// Waits for what it asked for: whoever aborts wants to know that the bench is safe.
@@ -24,6 +26,10 @@ Result<ExitStatus> run_abort(const AbortOptions& options) {
     const auto status = asked ? (*client)->call("status") : asked;
     if (!status && status.error().message.find("is gone") == std::string::npos) {
       return status.error();
+    }
+    if (options.json) {
+      print_json({{"daemon_ended", true}, {"safe_state_reached", false}});
+      return ExitStatus::kDone;
     }
     fmt::print("The daemon has ended; the bench is NOT in its safe state until it starts again.\n");
     return ExitStatus::kDone;
@@ -39,7 +45,11 @@ Result<ExitStatus> run_abort(const AbortOptions& options) {
     if (!last->value("safe_state_reached", false)) {
       return Error{ErrorCode::kDevice, ended_text(*last)};
     }
-    fmt::print("{}\n", ended_text(*last));
+    if (options.json) {
+      print_json(*last);
+    } else {
+      fmt::print("{}\n", ended_text(*last));
+    }
     return ExitStatus::kDone;
   }
 }
@@ -54,6 +64,7 @@ void add_abort(CLI::App& app, Action& action) {
       [](CLI::App& command, AbortOptions& options) {
         command.add_flag("--force", options.force,
                          "End the daemon at once and leave the bench as it is");
+        command.add_flag("--json", options.json, "One JSON document on stdout: the run that ended");
         add_socket_option(command, options.socket);
       },
       run_abort);

@@ -6,6 +6,7 @@
 
 #include "cli/command.hpp"
 #include "cli/control_client.hpp"
+#include "cli/output.hpp"
 
 namespace fogbench::cli {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 struct AnswerOptions {
   std::string socket, answer;
   std::optional<std::uint64_t> prompt;
+  bool json = false;
 };
 
 Result<ExitStatus> run_answer(const AnswerOptions& options) {
@@ -28,7 +30,12 @@ Result<ExitStatus> run_answer(const AnswerOptions& options) {
   const auto answered =
       (*client)->call("answer", {{"prompt", prompt}, {"confirm", options.answer == "yes"}});
   if (!answered) return answered.error();
-  fmt::print("Answered {}: {}\n", options.answer, question.value("text", ""));
+  const std::string text = question.value("text", "");
+  if (options.json) {
+    print_json({{"prompt", prompt}, {"text", text}, {"answer", options.answer}});
+  } else {
+    fmt::print("Answered {}: {}\n", options.answer, text);
+  }
   return ExitStatus::kDone;
 }
 
@@ -46,6 +53,7 @@ void add_answer(CLI::App& app, Action& action) {
             ->check(CLI::IsMember({"yes", "no"}));
         command.add_option("--prompt", options.prompt,
                            "The prompt's number (default: the one that waits)");
+        command.add_flag("--json", options.json, "One JSON document on stdout");
         add_socket_option(command, options.socket);
       },
       run_answer);

@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/common_options.hpp"
 #include "cli/control_client.hpp"
+#include "cli/output.hpp"
 #include "cli/status_text.hpp"
 #include "drivers/clock.hpp"
 #include "procedures/sentence.hpp"
@@ -19,6 +20,7 @@ namespace {
 struct PauseOptions {
   std::string socket;
   bool after_run = false;
+  bool json = false;
 };
 
 Result<ExitStatus> run_pause(const PauseOptions& options) {
@@ -26,7 +28,12 @@ Result<ExitStatus> run_pause(const PauseOptions& options) {
   if (!client) return client.error();
   const auto done = (*client)->call(options.after_run ? "hold" : "pause");
   if (!done) return done.error();
-  if (options.after_run) {
+  if (options.json) {
+    // Where no step is left to hold before, a pause is one after the run.
+    print_json(
+        {{"pauses", options.after_run || done->value("after_run", false) ? "after_run"
+                                                                         : "before_next_step"}});
+  } else if (options.after_run) {
     fmt::print("No run begins until fogbench resume; one that is under way goes on to its end.\n");
   } else if (done->value("after_run", false)) {
     fmt::print(
@@ -41,6 +48,7 @@ struct ResumeOptions {
   std::string socket, gyro_on_since;
   std::optional<std::uint64_t> run;
   bool discard = false;
+  bool json = false;
 };
 
 Result<ExitStatus> run_resume(const ResumeOptions& options) {
@@ -55,12 +63,22 @@ Result<ExitStatus> run_resume(const ResumeOptions& options) {
   if (!options.run) {
     const auto resumed = (*client)->call("resume", params);
     if (!resumed) return resumed.error();
-    fmt::print("Resumed.\n");
+    if (options.json) {
+      print_json({{"resumed", true}});
+    } else {
+      fmt::print("Resumed.\n");
+    }
     return ExitStatus::kDone;
   }
   params["run"] = *options.run;
   const auto done = (*client)->call(options.discard ? "discard" : "resume", params);
   if (!done) return done.error();
+  if (options.json) {
+    nlohmann::ordered_json out{{options.discard ? "discarded" : "takes_up", *options.run}};
+    if (!options.discard) out.update(*done);
+    print_json(out);
+    return ExitStatus::kDone;
+  }
   if (options.discard) {
     fmt::print("Run {} is given up; what it measured stays in the run log.\n", *options.run);
     return ExitStatus::kDone;
@@ -84,6 +102,7 @@ void add_pause(CLI::App& app, Action& action) {
       [](CLI::App& command, PauseOptions& options) {
         command.add_flag("--after-run", options.after_run,
                          "Let the run go on to its end, and hold the queue then");
+        command.add_flag("--json", options.json, "One JSON document on stdout");
         add_socket_option(command, options.socket);
       },
       run_pause);
@@ -109,6 +128,7 @@ void add_resume(CLI::App& app, Action& action) {
         command.add_flag("--discard", options.discard, "Give the interrupted run up instead")
             ->needs(run)
             ->excludes(since);
+        command.add_flag("--json", options.json, "One JSON document on stdout");
         add_socket_option(command, options.socket);
       },
       run_resume);

@@ -78,7 +78,7 @@ TEST_F(ControlTest, PausesResumesAndAbortsToTheSafeState) {
   json({"run", procedure("next", 1), "--json"});
   wait_until(
       [](const nlohmann::json& now) { return now["run"].is_object() && now["run"]["points"] > 0; });
-  ASSERT_EQ(fogbench({"pause"}).status, 0);
+  EXPECT_EQ(json({"pause", "--json"}), nlohmann::json({{"pauses", "before_next_step"}}));
   const auto paused =
       wait_until([](const nlohmann::json& now) { return now["state"] == "paused"; });
   EXPECT_EQ(paused["run"]["procedure"], "long");
@@ -90,7 +90,7 @@ TEST_F(ControlTest, PausesResumesAndAbortsToTheSafeState) {
   EXPECT_NE(shown.out.find("paused: run 1, long"), std::string::npos) << shown.out;
   EXPECT_NE(shown.out.find("degC"), std::string::npos) << shown.out;
 
-  ASSERT_EQ(fogbench({"resume"}).status, 0);
+  EXPECT_EQ(json({"resume", "--json"}), nlohmann::json({{"resumed", true}}));
   wait_until(
       [&](const nlohmann::json& now) { return now["run"]["points"] > paused["run"]["points"]; });
   const Finished aborted = fogbench({"abort"});
@@ -121,7 +121,9 @@ TEST_F(ControlTest, AnyClientAnswersAPrompt) {
 
   json({"run", procedure("asks", 1, "Turn the gyro."), "--json"});
   wait_for_prompt();
-  EXPECT_EQ(fogbench({"answer", "no"}).status, 0);
+  const auto answered = json({"answer", "no", "--json"});
+  EXPECT_EQ(answered["answer"], "no");
+  EXPECT_EQ(answered["text"], "Turn the gyro.");
   const auto after = wait_until([](const nlohmann::json& now) { return now["run"].is_null(); });
   EXPECT_EQ(after["last_run"]["outcome"], "aborted");
   EXPECT_EQ(after["last_run"]["safe_state_reached"], true);

@@ -61,7 +61,7 @@ TEST_F(OperatorsTest, AfterThisRunNoOtherThoughTheDaemonDies) {
   run(procedure("second", 1));
   run(procedure("third", 1));
   wait_for_prompt();
-  ASSERT_EQ(fogbench({"pause", "--after-run"}).status, 0);
+  EXPECT_EQ(json({"pause", "--after-run", "--json"}), nlohmann::json({{"pauses", "after_run"}}));
   EXPECT_EQ(fogbench({"queue", "--move", "3", "--to", "1"}).status, 0);
   ASSERT_EQ(fogbench({"answer", "yes"}).status, 0);
   EXPECT_EQ(wait_for_end()["last_run"]["points"], 1);
@@ -160,7 +160,7 @@ TEST_F(OperatorsTest, AnInterruptedRunIsOfferedWhateverCameAfterItOrWhatIsInTheW
   expect_says(shown.out,
               "fogbench resume 1 --discard gives it up, fogbench run long begins it anew");
   expect_refused(fogbench({"resume", "1"}), 3, "run 1 cannot be taken up");
-  EXPECT_EQ(fogbench({"resume", "1", "--discard"}).status, 0);
+  EXPECT_EQ(json({"resume", "1", "--discard", "--json"}), nlohmann::json({{"discarded", 1}}));
   EXPECT_TRUE(status()["interrupted"].is_null());
 }
 
