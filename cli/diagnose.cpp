@@ -18,6 +18,7 @@
 #include "cli/load_table.hpp"
 #include "cli/noise_option.hpp"
 #include "cli/output.hpp"
+#include "cli/page_file.hpp"
 #include "cli/shell_word.hpp"
 #include "config/output_file.hpp"
 #include "config/paths.hpp"
@@ -99,15 +100,25 @@ Result<std::string> extended_model(const model::Diagnosis& d, const DataOptions&
   return config::to_json_text(extended);
 }
 
-/// Opened before the work, so that a path that cannot be written is known at once. Null: none.
-Result<std::unique_ptr<config::OutputFile>> opened(const std::string& path) {
-  if (path.empty()) return std::unique_ptr<config::OutputFile>();
-  return config::OutputFile::open(path);
-}
+/// Opened before the work, so that a path that cannot be written is known at once.
+struct Files {
+  std::optional<PageFile> page;
+  std::unique_ptr<config::OutputFile> model;
+};
 
-Status put(config::OutputFile& file, const std::string& text) {
-  Status written = file.write(text);
-  return written ? file.commit() : written;
+Result<Files> open_files(const DiagnoseOptions& options) {
+  Files files;
+  if (!options.report.empty()) {
+    auto page = PageFile::open(options.report);
+    if (!page) return page.error();
+    files.page = std::move(*page);
+  }
+  if (!options.output.empty()) {
+    auto model = config::OutputFile::open(options.output);
+    if (!model) return model.error();
+    files.model = std::move(*model);
+  }
+  return files;
 }
 
 Result<model::DiagnoseOptions> options_of(const DiagnoseOptions& options) {
@@ -157,9 +168,12 @@ Status read_given(const DiagnoseOptions& options, Given& given) {
   given.quiet = std::move(noise->record);
   if (given.quiet) given.how.quiet = &*given.quiet;
   if (options.quiet.empty()) return {};
+  const Status one = expect_one_gyro({options.data.data.front(), options.quiet}, options.data);
+  if (!one) return one.error();
   DataOptions record = options.data;
   record.data = {options.quiet};
   record.segment.clear();
+  record.tests.clear();
   auto loaded = load_table(record, {&given.model, model::kMostRowsToRead});
   if (!loaded) return loaded.error();
   given.quiet = std::move(*loaded);
@@ -254,10 +268,8 @@ Result<ExitStatus> run_each(const DiagnoseOptions& options) {
 
 Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
   if (options.each) return run_each(options);
-  const auto page_file = opened(options.report), model_file = opened(options.output);
-  if (!page_file) return page_file.error();
-  if (!model_file) return model_file.error();
-  config::OutputFile *page = page_file->get(), *extended = model_file->get();
+  auto files = open_files(options);
+  if (!files) return files.error();
   Given given;
   if (Status read = read_given(options, given); !read) return read.error();
   const auto result = diagnosed(options, given);
@@ -265,15 +277,17 @@ Result<ExitStatus> run_diagnose(const DiagnoseOptions& options) {
   if (!result) return result.error();
   const std::string next = next_step(*result, options, given.model.fit.has_value());
   const model::VerdictWords words = model::verdict_in_words(*result, next);
-  if (page) {
-    const Status written =
-        put(*page, model::diagnosis_html(*result, words, given.model, data_name(options.data)));
+  if (files->page) {
+    const Status written = files->page->write(
+        model::diagnosis_html(*result, words, given.model, data_name(options.data)));
     if (!written) return written.error();
   }
-  if (extended) {
+  if (files->model) {
     const auto text = extended_model(*result, options.data);
     if (!text) return text.error();
-    if (Status written = put(*extended, *text); !written) return written.error();
+    Status written = files->model->write(*text);
+    if (written) written = files->model->commit();
+    if (!written) return written.error();
   }
   if (options.json) {
     print_json(diagnosis_json(*result, next));
@@ -302,7 +316,9 @@ void add_diagnose(CLI::App& app, Action& action) {
         add_noise_option(command, options.noise);
         command.add_option("--candidate", options.candidates,
                            "Model file whose terms take part as candidates, beside the catalogue");
-        command.add_option("--report", options.report, "Write one self-contained HTML page");
+        command.add_option(
+            "--report", options.report,
+            "Write one self-contained HTML page, or its print when the name ends with .pdf");
         command.add_option("-o,--output", options.output,
                            "Write the model with what was found, fitted");
         command.add_option("--bench", options.bench,

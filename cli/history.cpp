@@ -13,7 +13,7 @@
 #include "cli/command.hpp"
 #include "cli/common_options.hpp"
 #include "cli/output.hpp"
-#include "config/output_file.hpp"
+#include "cli/page_file.hpp"
 #include "drivers/clock.hpp"
 #include "model/report/report_page.hpp"
 #include "model/report/svg_plot.hpp"
@@ -227,12 +227,13 @@ std::string page_of(const History& history, const std::string& store) {
   page += fmt::format("<h1>History</h1>\n<p class=\"sub\">{}, until {}</p>\n",
                       model::escaped(store), drivers::utc_text(machine_unix_s()));
   if (!history.summaries.empty()) {
-    page += "<h2>Runs</h2>\n<table>\n";
+    page += "<h2>Runs</h2>\n<table class=\"words\">\n";
     page += row(Cells(std::begin(kSummaryHeads), std::end(kSummaryHeads)), "th");
     for (const Summary& summary : history.summaries) page += row(cells_of(summary), "td");
     page += "</table>\n";
   }
-  page += "<h2>What happened</h2>\n<table>\n" + row(Cells{"UTC", "run", "gyro", "what"}, "th");
+  page += "<h2>What happened</h2>\n<table class=\"words\">\n" +
+          row(Cells{"UTC", "run", "gyro", "what"}, "th");
   for (const Happened& one : history.all) {
     const std::string at = drivers::utc_text(one.unix_s);
     page += row(
@@ -278,7 +279,9 @@ Result<ExitStatus> run_history(const HistoryOptions& options) {
   const auto history = history_of(**reader, options);
   if (!history) return history.error();
   if (!options.html.empty()) {
-    const Status written = config::write_file(options.html, page_of(*history, path->string()));
+    auto page = PageFile::open(options.html);
+    if (!page) return page.error();
+    const Status written = page->write(page_of(*history, path->string()));
     if (!written) return written.error();
   }
   if (options.json) {
@@ -306,7 +309,10 @@ void add_history(CLI::App& app, Action& action) {
             "--since", options.since,
             "From when on: 2026-11-29, 2026-11-29T18:00:00Z, or so long ago, 40min, 12h, 7d");
         command.add_option("--gyro", options.gyro, "Of this gyro alone, by its serial number");
-        command.add_option("--html", options.html, "Write one self-contained page too");
+        command.add_option(
+            "--html", options.html,
+            "Write one self-contained page too, or its print when the name ends with "
+            ".pdf");
         add_store_option(command, options.store);
         command.add_flag("--json", options.json, "One JSON document on stdout");
       },

@@ -17,11 +17,25 @@ namespace {
 
 /// A value and its expanded uncertainty, to the digits that the uncertainty leaves meaning in.
 std::pair<std::string, std::string> value_and_uncertainty(const Estimate& e) {
+  if (!e.unexcited.empty()) return {"not excited", ""};
   if (std::isnan(e.value)) return {"not determined", ""};
   if (e.held) return {fmt::format("{:.6g}", e.value), "held"};
   const double expanded = e.coverage_factor * e.standard_error;
   const config::Rounded r = config::rounded(e.value, expanded);
   return {r.value, std::isfinite(expanded) ? r.uncertainty : "unknown"};
+}
+
+/// Within quotes of a style sheet.
+std::string css_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == '"' || c == '\\' || c == '<') {
+      out += fmt::format("\\{:x} ", static_cast<unsigned char>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -31,8 +45,9 @@ std::string page_start(const std::string& title, std::string_view language,
   return fmt::format(
       "<!doctype html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n",
-      language, escaped(title), kReportStyle, style);
+      "<title>{}</title>\n<style>{}{}@page {{ @top-left {{ content: \"{}\"; }} }}\n</style>\n"
+      "</head>\n<body>\n",
+      language, escaped(title), kReportStyle, style, css_text(title));
 }
 
 std::string page_end(const std::string& rows_json) {

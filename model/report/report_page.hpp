@@ -17,7 +17,8 @@
 
 namespace fogbench::model {
 
-/// Everything up to the body's first element. `style` follows the pages' own.
+/// Everything up to the body's first element. `style` follows the pages' own. Each printed sheet
+/// carries the title and its number.
 std::string page_start(const std::string& title, std::string_view language = "en",
                        std::string_view style = {});
 /// The rest, with `rows_json` for the script: what a pointed-at row shows (report_plots.hpp).
