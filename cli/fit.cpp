@@ -65,6 +65,10 @@ void print_result(const model::FitResult& result, const FitCommandOptions& optio
                    {"expanded", "95.45 %", Align::kRight},
                    {"unit", "", Align::kLeft}});
   for (const model::Estimate& e : result.estimates) {
+    if (!e.unexcited.empty()) {
+      table.add_row({e.name, "not excited", "-", "-", e.unit});
+      continue;
+    }
     const double expanded = e.coverage_factor * e.standard_error;
     const config::Rounded r = config::rounded(e.value, e.held ? 0.0 : e.standard_error);
     table.add_row({e.name, r.value, e.held ? "held" : r.uncertainty,
@@ -91,7 +95,8 @@ nlohmann::json to_json(const model::FitResult& result) {
                          {"standard_error", e.standard_error},
                          {"expanded_uncertainty", e.coverage_factor * e.standard_error},
                          {"coverage_factor", e.coverage_factor},
-                         {"held", e.held}});
+                         {"held", e.held},
+                         {"excited", e.unexcited.empty()}});
   }
   nlohmann::json correlations = nlohmann::json::array();
   for (const Correlation& c : strong_correlations(result)) {

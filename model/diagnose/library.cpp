@@ -8,11 +8,11 @@
 #include <limits>
 #include <set>
 
-#include "model/diagnose/excitation.hpp"
 #include "model/diagnose/library_builder.hpp"
 #include "model/diagnose/sensitivities.hpp"
 #include "model/diagnose/shadows.hpp"
 #include "model/effects/catalogue.hpp"
+#include "model/effects/excitation.hpp"
 #include "model/effects/expression.hpp"
 #include "model/table/moving_signals.hpp"
 

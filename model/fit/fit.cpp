@@ -16,6 +16,7 @@
 #include "model/fit/gls.hpp"
 #include "model/fit/inner_search.hpp"
 #include "model/fit/observations.hpp"
+#include "model/fit/unexcited.hpp"
 #include "model/noise/stated_errors.hpp"
 #include "model/table/bad_rows.hpp"
 #include "model/table/row_order.hpp"
@@ -354,7 +355,9 @@ std::string name_of_row(const Table& table, std::size_t row) {
   if (!table.segment().at(row).empty()) {
     add(fmt::format("segment {}", table.segment().at(row)));
   }
-  if (table.run().values.size() > 1) add(fmt::format("run {}", table.run().at(row)));
+  if (table.run().values.size() > 1) {
+    add(fmt::format("{} {}", table.run_word(), table.run().at(row)));
+  }
   return fmt::format("Row {}{}{}", row + 1, where, where.empty() ? "" : ")");
 }
 
@@ -545,6 +548,13 @@ Result<FitResult> fit(const Table& table, const config::ModelFile& model,
     fill_independent_noise(work);
   }
   fill_estimates(work);
+  const std::vector<UnexcitedTerm> unexcited =
+      unexcited_terms(signals, model, *design, work.result.estimates);
+  if (!unexcited.empty() && unexcited.size() < model.terms.size()) {
+    auto rest = fit(table, without_terms(model, unexcited), options);
+    if (!rest) return rest;
+    return with_unexcited(std::move(*rest), unexcited, *design, work.result.estimates);
+  }
   warn_of_calendar(work);
   for (std::string& warning : weak_evidence(work.result)) {
     work.result.warnings.push_back(std::move(warning));

@@ -51,6 +51,7 @@ struct Estimate {
   /// The standard error that is left when the model's inner parameters are held where they are;
   /// missing where that is not known.
   double error_at_inner = kMissing;
+  std::string unexcited = {};  ///< why these data cannot show its term, which was left out
 };
 
 /// A row that was not believed (bad_rows.hpp).

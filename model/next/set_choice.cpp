@@ -1,4 +1,5 @@
 #include "model/next/set_choice.hpp"
+#include "model/effects/excitation.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +9,6 @@
 #include <limits>
 #include <optional>
 
-#include "model/diagnose/excitation.hpp"
 #include "model/diagnose/present_run.hpp"
 #include "model/effects/catalogue.hpp"
 #include "model/table/signals.hpp"

@@ -1,4 +1,5 @@
 #include "model/next/unseen_effects.hpp"
+#include "model/effects/excitation.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "model/diagnose/excitation.hpp"
 #include "model/effects/catalogue.hpp"
 #include "model/next/separation.hpp"
 #include "model/next/set_choice.hpp"

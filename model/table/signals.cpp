@@ -156,6 +156,8 @@ std::vector<std::string> Signals::missing_for(const EffectInfo& info) const {
       missing.emplace_back("coil_current_a");
     } else if (name == "time_since_start_s" || name == "time_since_power_on_s") {
       missing.emplace_back("time_s");
+    } else if (name == "temperature_rate_c_per_h" && has_numbers("temperature_c")) {
+      missing.emplace_back("time_s");  // which makes it
     } else if (name == "temperature_acceleration_c_per_h2") {
       missing.emplace_back(available("time_s") ? "temperature_rate_c_per_h" : "time_s");
     } else if (name == "temperature_gradient_rate_c_per_h") {

@@ -373,5 +373,57 @@ TEST(Fit, InnerParameterAtTheEdgeOfItsRangeIsSaid) {
   EXPECT_TRUE(said);
 }
 
+// 21 to 55 degC; the field is what its sensor's noise makes of none.
+TEST(Fit, LeavesOutWhatTheDataNeverExciteAndSaysSo) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  Table table;
+  std::vector<double> rate, temperature, field;
+  for (int i = 0; i < 200; ++i) {
+    temperature.push_back(21.0 + 0.17 * i);
+    field.push_back(0.05 * normal(random));
+    rate.push_back(0.5 - 0.1 * 0.17 * i + 0.02 * normal(random));
+  }
+  table.set_column("rate_deg_per_h", rate);
+  table.set_column("temperature_c", temperature);
+  table.set_column("field_x_ut", field);
+  const ModelFile asked =
+      model_of({term("bias"), term("magnetic_linear_x"), term("temperature_linear")});
+  const auto fitted = fit(table, asked, {});
+  ASSERT_TRUE(fitted) << fitted.error().message;
+  ASSERT_EQ(fitted->estimates.size(), 3U);
+  const Estimate& unexcited = fitted->estimates[1];
+  EXPECT_EQ(unexcited.name, "magnetic_linear_x");
+  EXPECT_EQ(unexcited.unexcited, "field_x_ut stays at one value");
+  EXPECT_TRUE(std::isnan(unexcited.value));
+  EXPECT_NEAR(fitted->estimates[2].value, -0.1, 4.0 * fitted->estimates[2].standard_error);
+  EXPECT_TRUE(fitted->estimates[2].unexcited.empty());
+  ASSERT_EQ(fitted->covariance.rows(), 3);
+  EXPECT_TRUE(std::isnan(fitted->covariance(1, 1)));
+  EXPECT_NEAR(std::sqrt(fitted->covariance(2, 2)), fitted->estimates[2].standard_error, 1e-15);
+  EXPECT_THAT(fitted->warnings,
+              testing::Contains(HasSubstr("magnetic_linear_x is left out: these data do not")));
+  ASSERT_EQ(fitted->fitted.terms.size(), 2U);
+  EXPECT_EQ(fitted->fitted.terms[1].effect, "temperature_linear");
+}
+
+// The same small field, but so strong an effect that it shows all the same.
+TEST(Fit, KeepsWhatShowsHoweverLittleItWasExcited) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  Table table;
+  std::vector<double> rate, field;
+  for (int i = 0; i < 200; ++i) {
+    field.push_back(0.05 * normal(random));
+    rate.push_back(0.5 + 2.0 * field.back() + 0.02 * normal(random));
+  }
+  table.set_column("rate_deg_per_h", rate);
+  table.set_column("field_x_ut", field);
+  const auto fitted = fit(table, model_of({term("bias"), term("magnetic_linear_x")}), {});
+  ASSERT_TRUE(fitted) << fitted.error().message;
+  EXPECT_NEAR(fitted->estimates[1].value, 200.0, 4.0 * fitted->estimates[1].standard_error);
+  EXPECT_TRUE(fitted->estimates[1].unexcited.empty());
+}
+
 }  // namespace
 }  // namespace fogbench::model

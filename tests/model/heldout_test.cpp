@@ -115,6 +115,20 @@ TEST(HeldoutVotes, AStaticRecordIsNeverLeftOut) {
   EXPECT_EQ(votes.at(0).folds, 8);
 }
 
+// A term that next to nothing excites outside one block: its coefficient, from the other rows,
+// would miss that block by hundreds of sigma.
+TEST(HeldoutRms, IsNotThatOfABlockWhichAloneExcitesATerm) {
+  const NoiseCoefficients white{.angle_random_walk_deg_per_sqrt_h = 0.001};
+  const double sigma = 0.001 / std::sqrt(60.0 / 3600.0);
+  Eigen::MatrixXd x(kMinutes, 2);
+  x << Eigen::VectorXd::Ones(kMinutes), 1e-3 * unit_normals(31);
+  x.col(1).segment(40, 3).setConstant(1.0);
+  const Eigen::VectorXd y = sigma * unit_normals(32);
+  const double rms = heldout_rms(minutes(kMinutes), white, x, y, kMinutes);
+  EXPECT_GT(rms, 0.8 * sigma);
+  EXPECT_LT(rms, 1.4 * sigma);
+}
+
 // Any order of terms, any of the catalogue, on tables of noise: each term more leaves no more.
 TEST(LeastSquaresRms, NeverRisesWithATermMore) {
   const std::vector<std::string> effects{

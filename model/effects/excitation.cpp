@@ -1,4 +1,4 @@
-#include "model/diagnose/excitation.hpp"
+#include "model/effects/excitation.hpp"
 
 #include <fmt/format.h>
 
