@@ -39,6 +39,7 @@ model::Table to_table(const std::vector<Point>& points) {
     add(name, [&](const Point& point) { return procedures::value_of(point.auxiliary, name); });
   }
   table.set_run(text_column(points, [](const Point& point) { return std::to_string(point.test); }));
+  table.set_run_word("test");
   table.set_segment(text_column(points, [](const Point& point) { return point.segment; }));
   return table;
 }

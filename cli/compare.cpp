@@ -5,16 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/command.hpp"
+#include "cli/compare_pair.hpp"
 #include "cli/load_table.hpp"
 #include "cli/noise_option.hpp"
 #include "cli/output.hpp"
+#include "cli/page_file.hpp"
 #include "cli/shell_word.hpp"
 #include "config/noise_parts.hpp"
-#include "config/output_file.hpp"
 #include "config/paths.hpp"
 #include "config/rounding.hpp"
 #include "config/units.hpp"
@@ -93,6 +94,10 @@ void print_text(const model::Comparison& c, const CompareOptions& options,
                    {"+-", "95.45 %"},
                    {"unit", "", Align::kLeft}});
   for (const model::Estimate& e : c.fit.estimates) {
+    if (!e.unexcited.empty()) {
+      table.add_row({e.name, "not excited", "-", e.unit});
+      continue;
+    }
     const double expanded = e.coverage_factor * e.standard_error;
     const config::Rounded r = config::rounded(e.value, e.held ? 0.0 : expanded);
     table.add_row({e.name, r.value, e.held ? "held" : r.uncertainty, e.unit});
@@ -115,7 +120,8 @@ nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options
                          {"value", e.value},
                          {"standard_error", e.standard_error},
                          {"expanded_uncertainty", e.coverage_factor * e.standard_error},
-                         {"held", e.held}});
+                         {"held", e.held},
+                         {"excited", e.unexcited.empty()}});
   }
   for (const model::Region& r : c.regions) {
     regions.push_back({{"where", r.where},
@@ -173,14 +179,26 @@ nlohmann::json to_json(const model::Comparison& c, const CompareOptions& options
 }
 
 Result<ExitStatus> run_compare(const CompareOptions& options) {
+  if (options.data.data.size() == 2) {
+    if (options.as_is) {
+      return Error{ErrorCode::kUsage, "--as-is holds a model against one DATA, found two"};
+    }
+    return compare_pair({options.data, options.model, options.weight_by, options.noise,
+                         options.report, options.check, options.json});
+  }
+  if (options.model.empty()) {
+    return Error{ErrorCode::kUsage,
+                 "--model is required, or a second DATA to compare with the first (see fogbench "
+                 "compare --help)"};
+  }
   const auto file = config::find_config("models", options.model);
   if (!file) return file.error();
   const auto model = config::load_model(*file);
   if (!model) return model.error();
   // Whether the page can be written is better known before the work.
-  std::unique_ptr<config::OutputFile> page;
+  std::optional<PageFile> page;
   if (!options.report.empty()) {
-    auto opened = config::OutputFile::open(options.report);
+    auto opened = PageFile::open(options.report);
     if (!opened) return opened.error();
     page = std::move(*opened);
   }
@@ -197,9 +215,8 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
   if (!result) return with_notes(result.error(), notes);
   for (const std::string& note : notes) print_note(note);
   if (page) {
-    Status written =
+    const Status written =
         page->write(model::report_html(*result, *table, *model, data_name(options.data)));
-    if (written) written = page->commit();
     if (!written) return written.error();
   }
   if (options.json) {
@@ -217,20 +234,28 @@ Result<ExitStatus> run_compare(const CompareOptions& options) {
 
 void add_compare(CLI::App& app, Action& action) {
   add_command<CompareOptions>(
-      app, action, "compare", "See where a model and its measurements differ",
+      app, action, "compare",
+      "See where a model and its measurements differ, or two measurements from each other",
       "  fogbench compare config/data/paper-thermal.csv --model paper-thermal "
       "--as-is\n"
-      "  fogbench compare 7 --model general --report page.html\n",
+      "  fogbench compare 7 --model general --report page.html\n"
+      "  fogbench compare 7 8                 # two runs, of one gyro or two\n"
+      "  fogbench compare 7/1 7/2             # two tests of one run\n"
+      "Two DATA are fitted each by itself and compared coefficient by coefficient.\n",
       [](CLI::App& command, CompareOptions& options) {
-        add_data_options(command, options.data);
-        command.add_option("--model", options.model, "Model file, or a ready model's name")
-            ->required();
+        add_data_options(command, options.data, DataCount::kOneOrTwo);
+        command.add_option("--model", options.model,
+                           "Model file, or a ready model's name (of two runs by default the ready "
+                           "one of what both excited)");
         command.add_flag("--as-is", options.as_is,
                          "Hold the coefficients as given instead of fitting them");
         command.add_option("--weight-by", options.weight_by, "Column of standard deviations");
         add_noise_option(command, options.noise);
-        command.add_option("--report", options.report, "Write one self-contained HTML page");
-        command.add_flag("--check", options.check, "Exit with 1 when the model is inadequate");
+        command.add_option(
+            "--report", options.report,
+            "Write one self-contained HTML page, or its print when the name ends with .pdf");
+        command.add_flag("--check", options.check,
+                         "Exit with 1 when the model is inadequate, or two DATA differ");
         command.add_flag("--json", options.json, "One JSON document");
       },
       run_compare);

@@ -94,9 +94,15 @@ Status print_results(const std::filesystem::path& store, const procedures::Plan&
   if (!results) return results.error();
   std::string named = store_argument(options.store);
   fmt::print("{}\nRun {} is in {}\n", *results, summary.run, store.string());
-  fmt::print("Next: fogbench show {0}{1}\n", summary.run, named);
-  if (summary.points == 0) return {};
+  const std::string show = fmt::format("fogbench show {}{}", summary.run, named);
+  if (summary.points == 0) {
+    fmt::print("Next: {}\n", show);
+    return {};
+  }
   if (summary.end.outcome != RunOutcome::kCompleted) named += " --unfinished";
+  fmt::print("Next: fogbench verdict {0}{1}\n      fogbench passport {0}{1} -o passport-{0}.html\n",
+             summary.run, named);
+  fmt::print("      {}\n", show);
   fmt::print("      fogbench export {0}{1} -o run-{0}.csv\n", summary.run, named);
   const std::string model = model_for(plan);
   if (can_be_fitted(model, summary.points)) {

@@ -27,6 +27,27 @@ namespace {
 
 using Pairs = std::map<std::string, std::string>;
 
+/// "run 7", "test 2 of run 7", or the file.
+std::string spoken(const std::string& data, const DataOptions& options) {
+  const auto stored = run_in_store(data, options);
+  if (!stored || stored->store != options.store) return data;
+  const std::string run = fmt::format("run {}", stored->run);
+  return stored->test.empty() ? run : fmt::format("test {} of {}", stored->test, run);
+}
+
+/// Rows of these tests.
+Result<model::Table> only_tests(const std::string& data, const std::vector<std::string>& tests,
+                                const model::Table& table) {
+  std::vector<bool> keep(table.rows());
+  for (std::size_t row = 0; row < keep.size(); ++row) {
+    keep[row] = std::find(tests.begin(), tests.end(), table.run().at(row)) != tests.end();
+  }
+  if (std::find(keep.begin(), keep.end(), true) != keep.end()) return table.select(keep);
+  return Error{ErrorCode::kBadInput,
+               fmt::format("{}: has no test {}, expected one of {}", data, fmt::join(tests, " or "),
+                           fmt::join(table.run().values, ", "))};
+}
+
 std::optional<std::int64_t> run_number(std::string_view text) {
   std::int64_t run = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), run);
@@ -88,11 +109,15 @@ Status rename_in_run(std::int64_t run, const model::ReadOptions& read, model::Ta
   return {};
 }
 
+Result<std::unique_ptr<record::RunLogReader>> reader_of(const std::string& store) {
+  const auto path = store_to_read(store);
+  if (!path) return path.error();
+  return record::RunLogReader::open(*path);
+}
+
 Result<model::Table> load_run(const RunInStore& stored, const DataOptions& options,
                               const model::ReadOptions& read) {
-  const auto path = store_to_read(stored.store);
-  if (!path) return path.error();
-  auto reader = record::RunLogReader::open(*path);
+  const auto reader = reader_of(stored.store);
   if (!reader) return reader.error();
   const auto points = record::valid_points(**reader, stored.run, options.unfinished);
   if (!points) return points.error();
@@ -111,21 +136,62 @@ Result<model::Table> load_file(const std::string& data, const model::ReadOptions
   return model::read_table(file, read, file == data ? "" : data.substr(file.size() + 1));
 }
 
-void name_runs_after(const std::string& data, model::Table& table) {
+/// A test that was named as "7/1" is called so already.
+void name_runs_after(const std::string& data, const DataOptions& options, model::Table& table) {
+  const auto stored = run_in_store(data, options);
+  const bool named = stored && !stored->test.empty();
   model::TextColumn run = table.run();
-  for (std::string& value : run.values) value = fmt::format("{}/{}", data, value);
+  for (std::string& value : run.values) value = named ? data : fmt::format("{}/{}", data, value);
   table.set_run(std::move(run));
 }
 
 }  // namespace
 
 std::optional<RunInStore> run_in_store(const std::string& data, const DataOptions& options) {
-  if (const auto run = run_number(data)) return RunInStore{options.store, *run};
   const std::size_t hash = data.rfind('#');
-  if (hash == std::string::npos || hash == 0) return {};
-  const auto run = run_number(std::string_view(data).substr(hash + 1));
+  const bool other = hash != std::string::npos && hash > 0;
+  std::string_view number = std::string_view(data).substr(other ? hash + 1 : 0);
+  std::string test;
+  if (const std::size_t slash = number.find('/'); slash != std::string_view::npos) {
+    test = number.substr(slash + 1);
+    if (!run_number(test)) return {};
+    number = number.substr(0, slash);
+  }
+  const auto run = run_number(number);
   if (!run) return {};
-  return RunInStore{data.substr(0, hash), *run};
+  return RunInStore{other ? data.substr(0, hash) : options.store, *run, std::move(test)};
+}
+
+Result<std::string> gyro_of(const std::string& data, const DataOptions& options) {
+  const auto stored = run_in_store(data, options);
+  if (!stored) return std::string();
+  const auto reader = reader_of(stored->store);
+  if (!reader) return reader.error();
+  const auto run = (*reader)->run(stored->run);
+  if (!run) return run.error();
+  return run->header.gyro_serial_number;
+}
+
+Status expect_one_gyro(const std::vector<std::string>& data, const DataOptions& options) {
+  if (options.several_gyros) return {};
+  std::string first, first_gyro;
+  for (const std::string& one : data) {
+    const auto gyro = gyro_of(one, options);
+    if (!gyro) return gyro.error();
+    if (gyro->empty() || *gyro == first_gyro) continue;
+    if (first_gyro.empty()) {
+      first = one;
+      first_gyro = *gyro;
+      continue;
+    }
+    return Error{
+        ErrorCode::kBadInput,
+        fmt::format("{} is of gyro {} and {} of gyro {}; fogbench compare {} {} holds them "
+                    "against each other, --several-gyros takes them for one",
+                    spoken(first, options), first_gyro, spoken(one, options), *gyro,
+                    shell_word(first), shell_word(one))};
+  }
+  return {};
 }
 
 std::string file_of(const std::string& data) {
@@ -141,11 +207,17 @@ void add_data_options(CLI::App& command, DataOptions& options, DataCount count) 
   CLI::Option* data =
       command
           .add_option("DATA", options.data,
-                      "Measurements: the number of a run, STORE.db#NUMBER, or a file with a table: "
+                      "Measurements: the number of a run, 7/1 for test 1 of run 7, "
+                      "STORE.db#NUMBER, or a file with a table: "
                       "text of any dialect (.gz, .zst too), MATLAB, HDF5; FILE#NAME for one of "
                       "several in it")
           ->required();
   if (count == DataCount::kOne) data->expected(1);
+  if (count == DataCount::kOneOrTwo) data->expected(1, 2);
+  if (count == DataCount::kSeveral) {
+    command.add_flag("--several-gyros", options.several_gyros,
+                     "Take runs of several gyros for those of one");
+  }
   command
       .add_option("--column", options.columns,
                   "wanted=name: take this column from one of another name")
@@ -154,6 +226,8 @@ void add_data_options(CLI::App& command, DataOptions& options, DataCount count) 
       .add_option("--unit", options.units,
                   "name=unit: what this column of the file is in, such as gyro=deg/s; it is taken "
                   "to the unit that the wanted name ends in")
+      ->allow_extra_args(false);
+  command.add_option("--test", options.tests, "Only this test of each run")
       ->allow_extra_args(false);
   command.add_option("--segment", options.segment,
                      "Only rows whose segment matches, such as 'coil_z/*'");
@@ -165,8 +239,9 @@ void add_data_options(CLI::App& command, DataOptions& options, DataCount count) 
 std::string data_name(const DataOptions& options) {
   std::vector<std::string> names;
   for (const std::string& data : options.data) {
-    names.push_back(run_number(data) ? "run " + data : data);
+    names.push_back(spoken(data, options));
   }
+  if (options.tests.size() == 1) names.back() += ", test " + options.tests.front();
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -175,6 +250,8 @@ std::string data_arguments(const DataOptions& options) {
   for (const std::string& data : options.data) out += " " + shell_word(data);
   for (const std::string& column : options.columns) out += " --column " + shell_word(column);
   for (const std::string& unit : options.units) out += " --unit " + shell_word(unit);
+  for (const std::string& test : options.tests) out += " --test " + shell_word(test);
+  if (options.several_gyros) out += " --several-gyros";
   if (!options.segment.empty()) out += " --segment " + shell_word(options.segment);
   if (options.unfinished) out += " --unfinished";
   out += store_argument(options.store);
@@ -202,6 +279,9 @@ Result<model::Table> load_one(const std::string& data, const DataOptions& option
   const auto stored = run_in_store(data, options);
   auto table = stored ? load_run(*stored, options, read) : load_file(data, read);
   if (!table) return table;
+  if (stored && !stored->test.empty()) table = only_tests(data, {stored->test}, *table);
+  if (table && !options.tests.empty()) table = only_tests(data, options.tests, *table);
+  if (!table) return table;
   for (const std::string& line : table->provenance()) print_note(data + ": read as " + line);
   for (const std::string& doubt : model::doubts(*table)) {
     print_note(fmt::format("{}: warning: {}", data, doubt));
@@ -211,11 +291,12 @@ Result<model::Table> load_one(const std::string& data, const DataOptions& option
 }
 
 Result<model::Table> load_table(const DataOptions& options, const LoadHow& how) {
+  if (const Status one = expect_one_gyro(options.data, options); !one) return one.error();
   std::optional<model::Table> all;
   for (const std::string& data : options.data) {
     auto table = load_one(data, options, how);
     if (!table) return table.error();
-    if (options.data.size() > 1) name_runs_after(data, *table);
+    if (options.data.size() > 1) name_runs_after(data, options, *table);
     if (all) {
       all->append(*table);
     } else {

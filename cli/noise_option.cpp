@@ -43,6 +43,7 @@ Result<ChosenNoise> recorded(const std::string& noise, DataOptions data) {
   }
   data.data = {noise};
   data.segment.clear();
+  data.tests.clear();
   auto table = load_table(data);
   if (!table) return refused(noise, table.error().message);
   config::ModelFile still;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "acceptance/conditions.hpp"
 #include "acceptance/passport_json.hpp"
 #include "cli/command.hpp"
 #include "cli/common_options.hpp"
@@ -34,6 +35,7 @@ std::string results_table(const model::Judged& judged) {
                    {"minimum", ""},
                    {"maximum", ""},
                    {"unit", "", Align::kLeft},
+                   {"measured at", "", Align::kLeft},
                    {"verdict", "", Align::kLeft}});
   for (const model::Judgement& r : judged.results) {
     const bool missing = r.test.empty();
@@ -43,7 +45,8 @@ std::string results_table(const model::Judged& judged) {
                                         : std::string(name_of(r.verdict));
     table.add_row({r.quantity, missing ? "-" : r.test, missing ? "missing" : number.value,
                    std::isfinite(r.expanded_uncertainty) ? number.uncertainty : "-",
-                   limit_text(r.minimum), limit_text(r.maximum), r.unit, verdict});
+                   limit_text(r.minimum), limit_text(r.maximum), r.unit,
+                   acceptance::conditions_text(r.conditions, "degC", "uT"), verdict});
   }
   return table.text();
 }

@@ -71,6 +71,11 @@ Result<ExitStatus> run_watch(const WatchOptions& options) {
     if (!outcome) return outcome.error();
     if (any_run && ended && !options.json) {
       fmt::print("{}\n{}", ended_text(*last), queue_text(*status));
+      const std::int64_t run = last->value("run", std::int64_t{0});
+      if (run > 0 && last->value("points", 0) > 0) {
+        fmt::print("Next: fogbench verdict {0}\n      fogbench passport {0} -o passport-{0}.html\n",
+                   run);
+      }
     }
     return ExitStatus::kDone;
   }

@@ -48,7 +48,7 @@ Result<std::vector<Point>> valid_points(RunLogReader& reader, std::int64_t run, 
 Status write_points(const std::vector<Point>& points, config::OutputFile& out) {
   fmt::memory_buffer text;
   const auto append = std::back_inserter(text);
-  fmt::format_to(append, "run,segment,kind");
+  fmt::format_to(append, "test,segment,kind");
   for (const auto& channel : point_channels()) fmt::format_to(append, ",{}", channel.name);
   fmt::format_to(append, ",frames,frames_dropped");
   const auto auxiliary = procedures::auxiliary_names(points);

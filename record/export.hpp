@@ -15,7 +15,7 @@ namespace fogbench::record {
 Result<std::vector<procedures::Point>> valid_points(RunLogReader& reader, std::int64_t run,
                                                     bool unfinished);
 
-/// Columns of the measurement table (`run` holds the test), then what else the points have.
+/// Columns of the measurement table, then what else the points have.
 /// Numbers have the fewest digits that read back the same; missing ones are empty.
 Status write_points(const std::vector<procedures::Point>& points, config::OutputFile& out);
 

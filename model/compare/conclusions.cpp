@@ -143,6 +143,7 @@ void say_worst_range(Comparison& c, const Table& table, const config::ModelFile&
 struct RunFit {
   std::string run;
   FitResult fit;
+  std::string word;  ///< what `run` is: "run" or "test"
 };
 
 std::vector<RunFit> fit_each_run(const Table& table, const config::ModelFile& model,
@@ -153,7 +154,7 @@ std::vector<RunFit> fit_each_run(const Table& table, const config::ModelFile& mo
     std::vector<bool> keep(table.rows());
     for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = runs.index[i] == r;
     auto fitted = fit(table.select(keep), model, options);
-    if (fitted) out.push_back({runs.values[r], std::move(*fitted)});
+    if (fitted) out.push_back({runs.values[r], std::move(*fitted), table.run_word()});
   }
   return out;
 }
@@ -175,7 +176,7 @@ RunCoefficients magnetic_part(const RunFit& run, std::vector<std::string>& names
     }
     ++k;
   }
-  RunCoefficients out{.run = run.run, .values = {}, .covariance = {}};
+  RunCoefficients out{.run = run.run, .values = {}, .covariance = {}, .word = run.word};
   out.values =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   const Eigen::MatrixXd covariance = run.fit.covariance(chosen, chosen);
@@ -196,8 +197,10 @@ void say_differences(std::vector<std::string>& out, const std::vector<RunFit>& r
           std::hypot(a.coverage_factor * a.standard_error, b.coverage_factor * b.standard_error);
       if (!(std::abs(b.value - a.value) > expanded)) continue;
       out.push_back(fmt::format(
-          "From run {} to run {} {} changed by {:.3g} +- {:.2g} {} (95 %), from {:.3g} to {:.3g}.",
-          runs[0].run, runs[r].run, a.name, b.value - a.value, expanded, a.unit, a.value, b.value));
+          "From {0} {1} to {0} {2} {3} changed by {4:.3g} +- {5:.2g} {6} (95 %), from {7:.3g} to "
+          "{8:.3g}.",
+          runs[0].word, runs[0].run, runs[r].run, a.name, b.value - a.value, expanded, a.unit,
+          a.value, b.value));
     }
   }
 }

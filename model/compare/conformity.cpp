@@ -74,6 +74,7 @@ void add_results(Judged& judged, const config::Limit& limit, int tests_expected,
     Judgement of_test = row;
     of_test.test = m->test;
     of_test.unit = m->unit;
+    of_test.conditions = m->conditions;
     of_test.value = m->value;
     of_test.expanded_uncertainty = expanded_uncertainty(*m, judged.coverage_factor);
     const bool limited = limit.minimum || limit.maximum;

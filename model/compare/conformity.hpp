@@ -9,6 +9,7 @@
 // U = k u with the limits' coverage factor k, widened as Student's t is where few degrees of
 // freedom estimated u. The difference of two tests has U = hypot(U1, U2).
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,15 @@ enum class Conformity { kPass, kFail, kIndeterminate };
 /// "pass", "fail", "indeterminate".
 std::string_view name_of(Conformity verdict);
 
+/// Where a result was measured, and so where its limit holds. NaN: not known, or without a field.
+struct Conditions {
+  double temperature_low_c = std::numeric_limits<double>::quiet_NaN();
+  double temperature_high_c = std::numeric_limits<double>::quiet_NaN();
+  std::string axes = {};  ///< of the field: "", "x", "xy"
+  double field_low_ut = std::numeric_limits<double>::quiet_NaN();
+  double field_high_ut = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// One result of one test.
 struct Measured {
   std::string quantity, test, unit;
@@ -31,6 +41,7 @@ struct Measured {
   double standard_error;  ///< NaN: not known
   /// t of 95.45 % for the degrees of freedom behind the standard error; 2 for many.
   double coverage_factor = 2.0;
+  Conditions conditions = {};
 };
 
 /// One result against its limits.
@@ -43,6 +54,7 @@ struct Judgement {
   Conformity verdict = Conformity::kIndeterminate;
   int tests_measured = 0;  ///< how many tests hold the quantity
   int tests_expected = 1;
+  Conditions conditions = {};
 };
 
 /// One result in one test and in the next that holds it.

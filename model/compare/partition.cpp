@@ -66,8 +66,8 @@ std::int16_t range_of(const std::vector<Range>& ranges, double value) {
 
 /// One range for each text that `part` makes of the column's texts.
 template <class Part>
-Partition by_text(const TextColumn& column, std::span<const std::size_t> rows, const char* kind,
-                  Part part) {
+Partition by_text(const TextColumn& column, std::span<const std::size_t> rows,
+                  std::string_view kind, Part part) {
   Partition out;
   std::map<std::string, std::int16_t> known;
   std::vector<std::int16_t> of_value;
@@ -159,7 +159,7 @@ std::vector<Partition> partition_rows(const Table& table, std::span<const std::s
   }
   const std::size_t runs = table.run().values.size();
   if (runs <= kMostTexts && rows.size() >= kFewestPerRun * runs) {
-    keep(out, by_text(table.run(), rows, "run", whole));
+    keep(out, by_text(table.run(), rows, table.run_word(), whole));
   }
   const Signals signals(table, reference_temperature_c);
   for (const Variable& variable : kVariables) {

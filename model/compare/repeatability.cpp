@@ -96,23 +96,23 @@ RunChange change_between(const RunCoefficients& a, const RunCoefficients& b,
                   : " (no noise is stated: the yardstick is what one common scale leaves "
                     "unexplained, taken to be equal for all coefficients)";
   const std::string list = fmt::format("{}", fmt::join(names, ", "));
+  const std::string from_to = fmt::format("From {0} {1} to {0} {2}", a.word, a.run, b.run);
   if (change.scale_changed && p_left >= 0.01) {
     change.says = fmt::format(
-        "From run {} to run {} the coefficients {} {} together: one common scale {:.2f} +- {:.2f} "
+        "{} the coefficients {} {} together: one common scale {:.2f} +- {:.2f} "
         "explains the change, their direction is kept to {:.1f} deg. That is not noise ({}){}.",
-        a.run, b.run, list, std::abs(change.common_scale) < 1.0 ? "shrank" : "grew",
-        change.common_scale, change.scale_standard_error, change.angle_deg, probability(p_scale),
-        yardstick);
+        from_to, list, std::abs(change.common_scale) < 1.0 ? "shrank" : "grew", change.common_scale,
+        change.scale_standard_error, change.angle_deg, probability(p_scale), yardstick);
   } else if (change.p_repeat < kSignificant) {
     change.says = fmt::format(
-        "From run {} to run {} the coefficients {} changed by more than noise explains ({}), and "
+        "{} the coefficients {} changed by more than noise explains ({}), and "
         "one common scale ({:.2f}) does not explain how: their direction turned by {:.1f} deg.",
-        a.run, b.run, list, probability(change.p_repeat), change.common_scale, change.angle_deg);
+        from_to, list, probability(change.p_repeat), change.common_scale, change.angle_deg);
   } else {
     change.says = fmt::format(
-        "From run {} to run {} the coefficients {} did not change by more than noise explains "
+        "{} the coefficients {} did not change by more than noise explains "
         "({}){}. RMS difference {:.2g} {}.",
-        a.run, b.run, list, probability(change.p_repeat), yardstick,
+        from_to, list, probability(change.p_repeat), yardstick,
         (b.values - a.values).norm() / std::sqrt(n), unit);
   }
   return change;

@@ -20,6 +20,7 @@ struct RunCoefficients {
   std::string run;
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;  ///< empty when no noise is known
+  std::string word = "run";    ///< what `run` is: "run" or "test"
 };
 
 /// Preconditions: both have as many values as names, at least two; both covariances or none.

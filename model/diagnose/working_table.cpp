@@ -165,6 +165,7 @@ Table texts_of(const Table& table, const std::vector<Bin>& bins) {
   for (const Bin& bin : bins) first.push_back(bin.begin);
   Table out;
   out.set_run(picked(table.run(), first));
+  out.set_run_word(table.run_word());
   out.set_segment(picked(table.segment(), first));
   return out;
 }
@@ -186,6 +187,7 @@ Table in_order(const Table& table, const std::string& observable, const std::vec
   notes.insert(notes.end(), order.notes.begin(), order.notes.end());
   Table texts;
   texts.set_run(picked(table.run(), order.rows));
+  texts.set_run_word(table.run_word());
   texts.set_segment(picked(table.segment(), order.rows));
   const std::vector<Bin> bins =
       order.rows.size() > kMostFineRows ? bins_within(texts, kMostFineRows) : bins_of(texts, 1);

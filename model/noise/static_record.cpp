@@ -26,8 +26,8 @@ Result<StaticRecord> static_record(const Table& table, const std::string& column
           fmt::format("row {}: {} is missing; a record without gaps was expected", i + 1, column));
     }
     if (run.index[i] != run.index[0]) {
-      return config::bad_input(fmt::format("row {}: run {} after run {}; one run was expected",
-                                           i + 1, run.at(i), run.at(0)));
+      return config::bad_input(fmt::format("row {0}: {1} {2} after {1} {3}; one {1} was expected",
+                                           i + 1, table.run_word(), run.at(i), run.at(0)));
     }
   }
   StaticRecord out{{rate.begin(), rate.end()}, interval_s};

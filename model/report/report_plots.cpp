@@ -332,7 +332,7 @@ std::string loop_legend(const PlottedFits& fits) {
 
 std::string rows_json(const PlottedFits& fits) {
   const Signals signals(fits.table, fits.model.reference_temperature_c);
-  nlohmann::json names = {"row", "run", "segment"}, rows = nlohmann::json::object();
+  nlohmann::json names = {"row", fits.table.run_word(), "segment"}, rows = nlohmann::json::object();
   std::vector<RowValues> columns;
   for (const std::string& variable : plotted_variables(fits, signals)) {
     names.push_back(heading_of(variable));

@@ -84,6 +84,7 @@ Result<Table> average_rows(const Table& table, double seconds) {
     return first;
   };
   out.set_run(kept(table.run()));
+  out.set_run_word(table.run_word());
   out.set_segment(kept(table.segment()));
   for (const std::string& line : table.provenance()) out.add_provenance(line);
   out.add_provenance(fmt::format("{} rows averaged over {:g} s each", table.rows(), seconds));

@@ -144,8 +144,19 @@ class TextReader {
     for (const ChosenColumn& chosen : choice_.columns) {
       columns_.push_back({chosen.name, kind_of(chosen.name), {}, {}});
     }
+    tests_are_runs();
     line_number_ = dialect_.lines_before;
     return {};
+  }
+
+  /// The tests of one run stand apart as runs do.
+  void tests_are_runs() {
+    const auto named = [this](const char* name) {
+      return std::find_if(columns_.begin(), columns_.end(),
+                          [name](const Column& column) { return column.name == name; });
+    };
+    const auto test = named("test");
+    if (test != columns_.end() && named("run") == columns_.end()) test->kind = Kind::kRun;
   }
 
   static Kind kind_of(const std::string& name) {
@@ -346,7 +357,10 @@ class TextReader {
     Table table;
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       Column& column = columns_[i];
-      if (column.kind == Kind::kRun) table.set_run(run_.take());
+      if (column.kind == Kind::kRun) {
+        table.set_run(run_.take());
+        table.set_run_word(column.name);
+      }
       if (column.kind == Kind::kSegment) table.set_segment(segment_.take());
       if (column.kind == Kind::kTime) {
         if (Status settled = settle_time(choice_.columns[i], column.values); !settled) {

@@ -60,6 +60,7 @@ Table averaged(const Table& table, std::size_t most) {
     return first;
   };
   out.set_run(kept(table.run()));
+  out.set_run_word(table.run_word());
   out.set_segment(kept(table.segment()));
   out.set_rows_averaged(at_once);
   return out;

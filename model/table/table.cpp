@@ -90,6 +90,7 @@ Table Table::select(const std::vector<bool>& keep) const {
   result.dropped_ = dropped_;
   result.provenance_ = provenance_;
   result.run_ = selected(run_, keep);
+  result.run_word_ = run_word_;
   result.segment_ = selected(segment_, keep);
   result.rows_ = result.run_.index.size();
   for (const auto& [name, values] : columns_) {
@@ -108,6 +109,7 @@ void Table::append(const Table& other) {
     return;
   }
   append_text(run_, other.run_);
+  if (other.run_word_ != run_word_) run_word_ = "run";
   append_text(segment_, other.segment_);
   for (const auto& [name, values] : other.columns_) {
     columns_.try_emplace(name, std::vector<double>(rows_, kMissing));

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace fogbench::model {
@@ -35,11 +36,14 @@ class Table {
 
   /// "1" and "" for every row where the source has no such column.
   const TextColumn& run() const { return run_; }
+  /// What the source calls that column: "test" where the rows are of a run's tests, else "run".
+  const std::string& run_word() const { return run_word_; }
   const TextColumn& segment() const { return segment_; }
 
   /// Precondition: as many values as rows, or the table is empty.
   void set_column(std::string name, std::vector<double> values);
   void set_run(TextColumn run);
+  void set_run_word(std::string word) { run_word_ = std::move(word); }
   void set_segment(TextColumn segment);
   /// What was recognised in the files that the table is from, a line each; none for a file that
   /// has the plain form, the house's names and units.
@@ -65,6 +69,7 @@ class Table {
   std::vector<std::string> provenance_;
   std::map<std::string, std::string, std::less<>> dropped_;
   TextColumn run_, segment_;
+  std::string run_word_ = "run";
 };
 
 }  // namespace fogbench::model

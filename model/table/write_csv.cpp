@@ -34,7 +34,7 @@ Status write_csv(const Table& table, const std::filesystem::path& file) {
   };
   if (says_something(table.run(), "1")) {
     texts.push_back(&table.run());
-    add_name("run");
+    add_name(table.run_word());
   }
   if (says_something(table.segment(), "")) {
     texts.push_back(&table.segment());

@@ -52,6 +52,41 @@ TEST_F(LoadTableTest, TakesARunByNumberAndByStore) {
   }
 }
 
+TEST_F(LoadTableTest, TakesOneTestOfARun) {
+  for (const auto& options :
+       {DataOptions{.data = {"1/2"}, .store = store_}, DataOptions{.data = {store_ + "#1/2"}},
+        DataOptions{.data = {"1"}, .store = store_, .tests = {"2"}}}) {
+    const auto table = load_table(options);
+    ASSERT_TRUE(table) << table.error().message;
+    EXPECT_EQ(table->rows(), 3U);
+    EXPECT_EQ(table->run_word(), "test");
+  }
+  expect_refused({.data = {"1/1"}, .store = store_}, ErrorCode::kBadInput,
+                 "has no test 1, expected one of 2");
+  expect_refused({.data = {"1"}, .store = store_, .tests = {"3"}}, ErrorCode::kBadInput,
+                 "has no test 3");
+  EXPECT_EQ(data_name({.data = {"1/2"}, .store = store_}), "test 2 of run 1");
+}
+
+TEST_F(LoadTableTest, NeverTakesTwoGyrosForOneUnasked) {
+  auto log = record::RunLog::open(store_);
+  ASSERT_TRUE(log);
+  for (const char* gyro : {"FOG-1", "FOG-1", "FOG-2"}) {
+    procedures::RunHeader header;
+    header.gyro_serial_number = gyro;
+    ASSERT_TRUE((*log)->begin_run(header, {}));
+    procedures::Point point;
+    point.rate_deg_per_h = 0.5;
+    ASSERT_TRUE((*log)->point(point));
+    ASSERT_TRUE((*log)->end_run({}));
+  }
+  EXPECT_TRUE(load_table({.data = {"3", "4"}, .store = store_}));
+  EXPECT_TRUE(load_table({.data = {"1", "3"}, .store = store_})) << "run 1 does not say its gyro";
+  expect_refused({.data = {"3", "4", "5"}, .store = store_}, ErrorCode::kBadInput,
+                 "run 3 is of gyro FOG-1 and run 5 of gyro FOG-2; fogbench compare 3 5");
+  EXPECT_TRUE(load_table({.data = {"3", "5"}, .store = store_, .several_gyros = true}));
+}
+
 TEST_F(LoadTableTest, KeepsOnlyTheSegmentsThatMatch) {
   const auto table = load_table({.data = {"1"}, .segment = "coil_x/*", .store = store_});
   ASSERT_TRUE(table);

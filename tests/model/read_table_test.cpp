@@ -285,6 +285,21 @@ TEST_F(ReadTable, WhatWasWrittenReadsBack) {
   EXPECT_EQ(back->column("rate_deg_per_h")[2], -1e-300);
 }
 
+TEST_F(ReadCsv, TestsStandApartAsRunsDo) {
+  const auto tests = read("test,rate_deg_per_h\n1,0.1\n2,0.2\n");
+  ASSERT_TRUE(tests);
+  EXPECT_EQ(tests->run_word(), "test");
+  EXPECT_EQ(tests->run().at(1), "2");
+  const auto runs = read("run,test,rate_deg_per_h\n7,1,0.1\n8,1,0.2\n");
+  ASSERT_TRUE(runs);
+  EXPECT_EQ(runs->run_word(), "run");
+  EXPECT_EQ(runs->run().at(1), "8");
+  EXPECT_EQ(runs->column("test")[1], 1.0);
+  const std::filesystem::path copy = folder_ / "copy.csv";
+  ASSERT_TRUE(write_csv(*tests, copy));
+  EXPECT_EQ(read_csv(copy)->run_word(), "test");
+}
+
 /// Rows at 1 s, two segments of `each` rows, rate = row number.
 std::string long_text(int each) {
   std::string text = "time_s,duration_s,rate_std_error_deg_per_h,segment,rate_deg_per_h\n";

@@ -51,7 +51,7 @@ TEST_F(ExportTest, NumbersReadBackTheSameAndMissingOnesAreEmpty) {
   point("a,b");
   const std::string text = exported();
   EXPECT_EQ(text.substr(0, text.find(",rate_std_deg")),
-            "run,segment,kind,time_s,duration_s,rate_deg_per_h");
+            "test,segment,kind,time_s,duration_s,rate_deg_per_h");
   EXPECT_NE(text.find("\n1,\"a,b\",average,0,0,0.30000000000000004,0"), std::string::npos);
   EXPECT_NE(text.find(",0,,0,0,0,0,0,0\n"), std::string::npos);  // field_set_ut is missing
 }
