@@ -5,8 +5,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 
+#include "acceptance/conditions.hpp"
 #include "acceptance/run_table.hpp"
 #include "config/paths.hpp"
 #include "model/compare/contrast.hpp"
@@ -77,7 +79,18 @@ Result<double> k_error(const SweepResult& sweep, const model::FitResult& fit) {
                                         fit);
 }
 
-Status add_measured(const TestResults& test, std::vector<Measured>& out) {
+/// Of the test's set points.
+model::Conditions conditions_at(const std::vector<SetPoint>& set_points) {
+  std::vector<Point> points(set_points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].temperature_c = set_points[i].temperature_c;
+  }
+  return conditions_at_rest(points);
+}
+
+/// `points` are the test's.
+Status add_measured(const TestResults& test, const std::vector<Point>& points,
+                    std::vector<Measured>& out) {
   const auto known = [&](const std::string& quantity) {
     return std::any_of(out.begin(), out.end(), [&](const Measured& m) {
       return m.test == test.name && m.quantity == quantity;
@@ -85,8 +98,9 @@ Status add_measured(const TestResults& test, std::vector<Measured>& out) {
   };
   if (test.fit) {
     for (const model::Estimate& e : test.fit->estimates) {
-      if (e.held) continue;
-      out.push_back({e.name, test.name, e.unit, e.value, e.standard_error, e.coverage_factor});
+      if (e.held || !e.unexcited.empty()) continue;
+      out.push_back({e.name, test.name, e.unit, e.value, e.standard_error, e.coverage_factor,
+                     conditions_of(e.name, points)});
     }
   }
   for (const SweepResult& sweep : test.results.sweeps) {
@@ -98,28 +112,36 @@ Status add_measured(const TestResults& test, std::vector<Measured>& out) {
       if (!found) return found.error();
       error = *found;
     }
-    out.push_back({quantity, test.name, kPer100Ut, sweep.k_deg_per_h.value, error});
+    out.push_back({quantity, test.name, kPer100Ut, sweep.k_deg_per_h.value, error, 2.0,
+                   conditions_of(quantity, points)});
   }
   const PooledSigma pooled = pooled_sigma(test.set_points);
   if (pooled.degrees_of_freedom > 0.0) {
     out.push_back({"temperature_sigma", test.name, "deg/h", pooled.sigma_deg_per_h.value,
                    pooled.sigma_deg_per_h.standard_error,
-                   model::coverage_factor(pooled.degrees_of_freedom)});
+                   model::coverage_factor(pooled.degrees_of_freedom),
+                   conditions_at(test.set_points)});
   }
   return {};
 }
 
 /// A term that the fit holds at zero was not seen: a value without an uncertainty.
-void add_measured(const NoiseTerms& terms, const std::string& test, std::vector<Measured>& out) {
+void add_measured(const NoiseTerms& terms, const std::string& test,
+                  const std::vector<Point>& points, std::vector<Measured>& out) {
   if (!terms.fit) return;
+  std::vector<Point> within;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(within), [&](const Point& point) {
+    return point.time_s >= terms.stretch.from_s && point.time_s <= terms.stretch.to_s;
+  });
+  const model::Conditions at = conditions_at_rest(within);
   const config::NoiseCoefficients& n = terms.fit->noise;
   const config::NoiseCoefficients& e = terms.fit->standard_error;
   out.push_back({"angle_random_walk", test, "deg/sqrt(h)", n.angle_random_walk_deg_per_sqrt_h,
-                 e.angle_random_walk_deg_per_sqrt_h});
+                 e.angle_random_walk_deg_per_sqrt_h, 2.0, at});
   out.push_back({"bias_instability", test, "deg/h", n.bias_instability_deg_per_h,
-                 e.bias_instability_deg_per_h});
+                 e.bias_instability_deg_per_h, 2.0, at});
   out.push_back({"rate_random_walk", test, "deg/h/sqrt(h)", n.rate_random_walk_deg_per_h_per_sqrt_h,
-                 e.rate_random_walk_deg_per_h_per_sqrt_h});
+                 e.rate_random_walk_deg_per_h_per_sqrt_h, 2.0, at});
 }
 
 /// The magnetic coefficients that the test's fit determined, with their covariance.
@@ -237,7 +259,7 @@ Status add_run(record::RunLogReader& reader, std::int64_t number, bool several,
     if (!test) return test.error();
     test->name = name_of(of_test.front().test);
     test->run = number;
-    if (const Status added = add_measured(*test, out.measured); !added) return added;
+    if (const Status added = add_measured(*test, of_test, out.measured); !added) return added;
     out.tests.push_back(std::move(*test));
     of_test.clear();
   }
@@ -245,7 +267,7 @@ Status add_run(record::RunLogReader& reader, std::int64_t number, bool several,
   if (!terms) return terms.error();
   if (*terms) {
     out.noise.push_back(**terms);
-    add_measured(**terms, name_of((*terms)->stretch.test), out.measured);
+    add_measured(**terms, name_of((*terms)->stretch.test), *points, out.measured);
   }
   return {};
 }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "acceptance/conditions.hpp"
+#include "config/nearest_name.hpp"
 #include "config/rounding.hpp"
 
 namespace fogbench::acceptance {
@@ -33,8 +35,23 @@ void remark_calibrations(const RunProvenance& made, std::vector<Remark>& out) {
   if (!undated.empty()) out.push_back({Text::kRemarkNoCalibration, number, undated});
 }
 
-std::vector<Remark> remarks_on(const Acceptance& acceptance) {
+/// A limit whose quantity nothing is called: a slip of the pen, which nothing would ever meet.
+void remark_names(const Acceptance& acceptance, const config::LimitsConfig& limits,
+                  std::vector<Remark>& out) {
+  std::vector<std::string_view> known;
+  for (const model::Measured& m : acceptance.measured) known.push_back(m.quantity);
+  for (const config::Limit& limit : limits.limits) {
+    if (is_quantity(limit.quantity)) continue;
+    if (std::find(known.begin(), known.end(), limit.quantity) != known.end()) continue;
+    std::string near(config::nearest_name(limit.quantity, known));
+    if (near.empty()) near = "?";
+    out.push_back({Text::kRemarkNoQuantity, limit.quantity, {std::move(near)}});
+  }
+}
+
+std::vector<Remark> remarks_on(const Acceptance& acceptance, const config::LimitsConfig& limits) {
   std::vector<Remark> out;
+  remark_names(acceptance, limits, out);
   for (const RunProvenance& made : acceptance.runs) {
     const procedures::RunHeader& header = made.run.header;
     const std::string number = std::to_string(made.run.run);
@@ -69,7 +86,7 @@ Result<Passport> make_passport(Acceptance acceptance, config::LimitsConfig limit
     if (made.whole() && made.raw_data_intact) continue;
     judged->overall = model::worst_of(judged->overall, model::Conformity::kIndeterminate);
   }
-  std::vector<Remark> remarks = remarks_on(acceptance);
+  std::vector<Remark> remarks = remarks_on(acceptance, limits);
   return Passport{std::move(acceptance), std::move(limits),    std::move(*judged),
                   std::move(remarks),    std::move(issued_at), std::move(software_version)};
 }

@@ -1,5 +1,6 @@
 #include "acceptance/passport_json.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -31,6 +32,14 @@ ordered_json list_of(const std::vector<T>& rows, Write write) {
   return list;
 }
 
+ordered_json conditions_json(const model::Conditions& at) {
+  ordered_json field;
+  if (!std::isnan(at.field_low_ut)) {
+    field = {{"axes", at.axes}, {"range_ut", {at.field_low_ut, at.field_high_ut}}};
+  }
+  return {{"temperature_c", {at.temperature_low_c, at.temperature_high_c}}, {"field", field}};
+}
+
 ordered_json judgement_json(const model::Judgement& row) {
   return {{"quantity", row.quantity},
           {"test", nullable(row.test)},
@@ -39,6 +48,7 @@ ordered_json judgement_json(const model::Judgement& row) {
           {"expanded_uncertainty", row.expanded_uncertainty},
           {"minimum", nullable(row.minimum)},
           {"maximum", nullable(row.maximum)},
+          {"conditions", conditions_json(row.conditions)},
           {"tests_measured", row.tests_measured},
           {"tests_expected", row.tests_expected},
           {"verdict", name_of(row.verdict)}};

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "acceptance/conditions.hpp"
 #include "acceptance/passport.css.hpp"
 #include "acceptance/passport_plots.hpp"
 #include "acceptance/passport_writer.hpp"
@@ -72,17 +73,18 @@ class Page : public PassportWriter {
 
   void limits() {
     section(Text::kLimits);
-    table({say(Text::kQuantity), say(Text::kUnit), say(Text::kTest), say(Text::kMinimum),
-           say(Text::kMaximum), say(Text::kValue), say(Text::kUncertainty), say(Text::kVerdict)},
-          3);
+    table({say(Text::kQuantity), say(Text::kUnit), say(Text::kTest), say(Text::kConditions),
+           say(Text::kMinimum), say(Text::kMaximum), say(Text::kValue), say(Text::kUncertainty),
+           say(Text::kVerdict)},
+          4);
     for (const model::Judgement& r : passport_.judged.results) {
       const bool missing = r.test.empty();
       auto [value, uncertainty] = rounded(r.value, r.expanded_uncertainty);
       if (missing) value = say(Text::kMissing);
       row({name(r.quantity), unit(r.unit),
            missing ? say(Text::kTooFewTests, r.tests_measured, r.tests_expected) : escaped(r.test),
-           number(r.minimum), number(r.maximum), value, uncertainty,
-           std::string(verdict_name(r.verdict, language_))},
+           conditions_text(r.conditions, "°C", say(Text::kMicrotesla)), number(r.minimum),
+           number(r.maximum), value, uncertainty, std::string(verdict_name(r.verdict, language_))},
           kind_of(r.verdict));
     }
     end_table();
