@@ -43,7 +43,9 @@ class NextCommandsTest : public ControlTest {
     for (const std::string& command : commands) {
       ++tried;
       const Finished done = shell(command);
-      EXPECT_EQ(done.status, 0) << command << "\n" << done.err;
+      // A sweep alone does not show all that the limits ask for: no pass.
+      const bool judges = command.rfind("fogbench verdict ", 0) == 0;
+      EXPECT_EQ(done.status, judges ? 1 : 0) << command << "\n" << done.err;
       if (generations > 1) follow(done.out, generations - 1, tried);
     }
   }
