@@ -246,7 +246,7 @@ void add_compare(CLI::App& app, Action& action) {
         add_data_options(command, options.data, DataCount::kOneOrTwo);
         command.add_option("--model", options.model,
                            "Model file, or a ready model's name (of two runs by default the ready "
-                           "one of what both excited)");
+                           "one of what they excited)");
         command.add_flag("--as-is", options.as_is,
                          "Hold the coefficients as given instead of fitting them");
         command.add_option("--weight-by", options.weight_by, "Column of standard deviations");

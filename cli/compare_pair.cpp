@@ -60,13 +60,14 @@ struct ChosenModel {
   std::string name;  ///< as --model takes it; empty: a bias, which is no file
 };
 
-/// The one that was named, else the ready one of what both excited; a bias where that is nothing.
+/// The one that was named, else the ready one of what either excited (what the other did not is
+/// left out of its fit); a bias where that is nothing.
 Result<ChosenModel> model_for(const std::string& named, const Side& a, const Side& b) {
-  const auto both = [&](const char* column, bool (*is)(double)) {
-    return any(a.table, column, is) && any(b.table, column, is);
+  const auto either = [&](const char* column, bool (*is)(double)) {
+    return any(a.table, column, is) || any(b.table, column, is);
   };
-  const bool heated = both("heater_w", [](double watts) { return watts > 0.0; });
-  const bool swept = both("field_set_ut", [](double level) { return std::isfinite(level); });
+  const bool heated = either("heater_w", [](double watts) { return watts > 0.0; });
+  const bool swept = either("field_set_ut", [](double level) { return std::isfinite(level); });
   std::string name = named;
   if (name.empty())
     name = heated && swept ? "general" : heated ? "thermal" : swept ? "magnetic" : "";

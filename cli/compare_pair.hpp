@@ -11,7 +11,7 @@ namespace fogbench::cli {
 
 struct PairOptions {
   DataOptions data;   ///< two
-  std::string model;  ///< empty: the ready one of what both excited
+  std::string model;  ///< empty: the ready one of what they excited
   std::string weight_by, noise, report;
   bool check = false, json = false;
 };

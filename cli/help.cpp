@@ -1,7 +1,6 @@
 // fogbench help: a command's help, or how a formula of one's own is written.
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "cli/command.hpp"
 #include "config/nearest_name.hpp"
@@ -40,13 +39,27 @@ Then as with any model:
   fogbench diagnose 7 --model magnetic --candidate mine.json    # beside the catalogue
 )text";
 
+/// The functions' names, as lines of the text.
+std::string functions_text() {
+  constexpr std::size_t kWidth = 86;
+  std::string text, line;
+  for (const std::string& name : model::expression_functions()) {
+    if (line.size() + name.size() > kWidth) {
+      text += line + "\n              ";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + name;
+  }
+  return text + line;
+}
+
 Result<ExitStatus> help_on(const CLI::App& app, const std::vector<std::string>& topic) {
   if (topic.empty()) {
     fmt::print("{}", app.help());
     return ExitStatus::kDone;
   }
   if (topic.front() == kExpressions) {
-    fmt::print(kExpressionText, fmt::join(model::expression_functions(), " "));
+    fmt::print(kExpressionText, functions_text());
     return ExitStatus::kDone;
   }
   const CLI::App* command = &app;
