@@ -20,6 +20,10 @@ struct WatchOptions {
   bool json = false;
 };
 
+bool at_terminal() {
+  return isatty(STDOUT_FILENO) == 1;
+}
+
 /// A page that overwrites itself; nothing when stdout is no terminal.
 class Page {
  public:
@@ -36,7 +40,7 @@ class Page {
   }
 
  private:
-  bool wanted_ = isatty(STDOUT_FILENO) == 1;
+  bool wanted_ = at_terminal();
   std::ptrdiff_t lines_ = 0;
 };
 
@@ -72,7 +76,7 @@ Result<ExitStatus> run_watch(const WatchOptions& options) {
     if (any_run && ended && !options.json) {
       fmt::print("{}\n{}", ended_text(*last), queue_text(*status));
       const std::int64_t run = last->value("run", std::int64_t{0});
-      if (run > 0 && last->value("points", 0) > 0) {
+      if (at_terminal() && run > 0 && last->value("points", 0) > 0) {
         fmt::print("Next: fogbench verdict {0}\n      fogbench passport {0} -o passport-{0}.html\n",
                    run);
       }

@@ -285,7 +285,7 @@ TEST_F(ReadTable, WhatWasWrittenReadsBack) {
   EXPECT_EQ(back->column("rate_deg_per_h")[2], -1e-300);
 }
 
-TEST_F(ReadCsv, TestsStandApartAsRunsDo) {
+TEST_F(ReadTable, TestsStandApartAsRunsDo) {
   const auto tests = read("test,rate_deg_per_h\n1,0.1\n2,0.2\n");
   ASSERT_TRUE(tests);
   EXPECT_EQ(tests->run_word(), "test");
@@ -297,7 +297,7 @@ TEST_F(ReadCsv, TestsStandApartAsRunsDo) {
   EXPECT_EQ(runs->column("test")[1], 1.0);
   const std::filesystem::path copy = folder_ / "copy.csv";
   ASSERT_TRUE(write_csv(*tests, copy));
-  EXPECT_EQ(read_csv(copy)->run_word(), "test");
+  EXPECT_EQ(read_table(copy)->run_word(), "test");
 }
 
 /// Rows at 1 s, two segments of `each` rows, rate = row number.

@@ -55,7 +55,7 @@ TEST_F(DeviceCommand, NamesEachProblemInALineOfItsOwn) {
 
 TEST_F(DeviceCommand, WithoutASubcommandOrAFileIsAUsageError) {
   expect_refused(fogbench({"device"}), 2, "subcommand");
-  expect_refused(fogbench({"device", "check"}), 2, "FILE");
+  expect_refused(fogbench({"device", "check"}), 2, "DEVICE");
   expect_refused(fogbench({"device", "check", "no-such-device"}), 3, "no-such-device");
   expect_refused(fogbench({"device", "probe", "gyro-kvh"}), 2, "--bench");
   expect_refused(fogbench({"device", "probe", "gyro-kvh", "--bench", "factory"}), 3,
