@@ -65,7 +65,7 @@ struct NotTestable {
 
 struct Library {
   std::vector<Candidate> candidates;  ///< the shadows last
-  Eigen::MatrixXd columns;  ///< one row per row of WorkingTable, finite
+  Eigen::MatrixXd columns;            ///< one row per row of WorkingTable, finite
   std::vector<NotTestable> not_testable;
 
   /// So many of the first columns hold those of all effects, or of all candidates.

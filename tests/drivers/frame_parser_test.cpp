@@ -222,7 +222,7 @@ TEST(FrameParser, CountsInSixteenBitsAndDoesWithoutAStatus) {
   device.crc = {.width_bits = 16, .polynomial = 0x1021, .count_bytes = 7, .offset_bytes = 7};
   ASSERT_TRUE(check_layout(device));
   Bytes bytes;
-  for (const std::uint16_t count : {65534, 65535, 0, 300, 301}) {  // 1 ... 299 are lost
+  for (const unsigned count : {65534U, 65535U, 0U, 300U, 301U}) {  // 1 ... 299 are lost
     Bytes frame{0xaa, 0x55, 0, 0, 0, 0, 0, 0, 0};
     store_bytes(frame.data() + 2, 2, device.byte_order, count);
     ASSERT_TRUE(write_field(device.rate, device.byte_order, count % 100, frame));
