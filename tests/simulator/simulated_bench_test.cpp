@@ -27,6 +27,7 @@ void expect_refused(const config::BenchConfig& bench, const config::ScenarioConf
 TEST(SimulatedBench, RefusesWhatItCannotSimulate) {
   config::BenchConfig by_hand = test_bench();
   by_hand.turntable.motorised = false;
+  by_hand.turntable.device.reset();
   by_hand.magnetometer.fitted = false;
   for (const char* device : {"turntable", "magnetometer"}) {
     expect_refused(by_hand, {.faults = {fault(device, FaultKind::kTimeout, 0, 1)}},

@@ -59,10 +59,10 @@ TEST_F(DiagnoseCommandTest, JsonHasTheKeysThatScriptsRelyOn) {
   std::set<std::string> keys;
   for (const auto& [key, value] : document.items()) keys.insert(key);
   EXPECT_EQ(keys,
-            (std::set<std::string>{"verdict", "p_adequate", "false_alarm_rate", "fit", "noise",
-                                   "failures", "missing", "ambiguous", "unexplained",
-                                   "not_testable", "bounds", "next_measurements", "ladder",
-                                   "left_out", "noise_source", "sentences", "warnings", "next"}));
+            (std::set<std::string>{
+                "verdict", "p_adequate", "false_alarm_rate", "fit", "noise", "failures", "missing",
+                "ambiguous", "unexplained", "not_testable", "bounds", "next_measurements", "ladder",
+                "read_as", "left_out", "noise_source", "sentences", "warnings", "next"}));
   ASSERT_FALSE(document["missing"].empty());
   const auto& found = document["missing"][0];
   EXPECT_EQ(found["effect"], "my_wave");
