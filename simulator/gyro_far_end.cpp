@@ -125,7 +125,11 @@ Status GyroFarEnd::write(std::span<const std::byte>) {
 }
 
 std::int64_t GyroFarEnd::complete_frames() const {
-  return static_cast<std::int64_t>(std::floor(plant_->now_s() / frame_s_ + 1e-6));
+  // A fast clock goes on while the plant advances: a frame whose middle the plant has not reached
+  // comes with the next reading.
+  const double by_clock = std::floor(plant_->now_s() / frame_s_ + 1e-6);
+  const double by_plant = std::ceil(plant_->reached_s() / frame_s_ - 0.5);
+  return static_cast<std::int64_t>(std::min(by_clock, by_plant));
 }
 
 void GyroFarEnd::skip_lost() {

@@ -71,6 +71,8 @@ class Plant {
   double encoder_deg() const { return encoder_deg_; }
 
   // Step k covers the time from k to k + 1 steps after power-on.
+  /// The end of the last step.
+  double reached_s() const { return static_cast<double>(steps_) * step_s_; }
   std::int64_t first_kept_step() const { return first_kept_step_; }
   /// Precondition: first_kept_step() <= step, and advance() has covered the step.
   const GyroInput& gyro_input(std::int64_t step) const {
