@@ -115,6 +115,42 @@ TEST_F(OwnWordsTest, AFormulaWithAnInnerParameterIsFittedAsHelpShowsIt) {
       0);
 }
 
+/// The gyro is described, measured twice, diagnosed on the first run and corrected on the second,
+/// which took no part in the fit: what is left there is noise.
+TEST_F(OwnWordsTest, TwoHiddenEffectsAreFoundAddedAndTakenOutOfAnotherRun) {
+  const std::string scenario = written("two.json", R"({
+    "name": "two", "description": "A shield that remembers, and a quadratic sensitivity.",
+    "noise": "navigation",
+    "gyro": {"terms": {"bias": 0.7, "temperature_linear": -0.012, "magnetic_linear_z": -0.25}},
+    "hidden": [{"effect": "magnetic_hysteresis_z", "amplitude": 0.12, "width": 0.6},
+               {"effect": "magnetic_quadratic_x", "amplitude": 0.02}]})");
+  for (const char* seed : {"31", "32"}) {
+    const Finished measured = fogbench({"dry-run", "acceptance", "--scenario", scenario, "--gyro",
+                                        "FOG-3", "--seed", seed, "--store", store()});
+    ASSERT_EQ(measured.status, 0) << measured.err;
+  }
+  const auto diagnosis =
+      json({"diagnose", "1", "--model", "general", "--store", store(), "--json"});
+  EXPECT_EQ(diagnosis["verdict"], "missing_effect");
+  std::vector<std::string> add{"add"};
+  for (const auto& missing : diagnosis["missing"]) {
+    add.push_back(missing["effect"].get<std::string>());
+  }
+  EXPECT_THAT(
+      add, testing::UnorderedElementsAre("add", "magnetic_hysteresis_z", "magnetic_quadratic_x"));
+  add.insert(add.end(), {"--model", "general", "-o", path("wider.json")});
+  ASSERT_EQ(fogbench(add).status, 0);
+  ASSERT_EQ(fogbench({"fit", "1", "--model", path("wider.json"), "-o", path("fitted.json"),
+                      "--store", store()})
+                .status,
+            0);
+  const auto corrected = json({"compensate", "2", "--model", path("fitted.json"), "-o",
+                               path("corrected.csv"), "--store", store(), "--json"});
+  EXPECT_GT(corrected["deviation_before"].get<double>(), 0.1);
+  // The noise of this gyro leaves 0.009 deg/h within a run, and its bias wanders between two.
+  EXPECT_LT(corrected["deviation_after"].get<double>(), 0.02);
+}
+
 TEST_F(OwnWordsTest, RunsOfTwoGyrosAreComparedAndNeverMergedUnasked) {
   dry_run_of("FOG-1", "device-1", "1");
   dry_run_of("FOG-1", "device-1", "2");
