@@ -282,9 +282,11 @@ Result<model::Table> load_one(const std::string& data, const DataOptions& option
   if (stored && !stored->test.empty()) table = only_tests(data, {stored->test}, *table);
   if (table && !options.tests.empty()) table = only_tests(data, options.tests, *table);
   if (!table) return table;
-  for (const std::string& line : table->provenance()) print_note(data + ": read as " + line);
+  for (const std::string& line : table->provenance()) {
+    note_beside_result(data + ": read as " + line);
+  }
   for (const std::string& doubt : model::doubts(*table)) {
-    print_note(fmt::format("{}: warning: {}", data, doubt));
+    note_beside_result(fmt::format("{}: warning: {}", data, doubt));
     table->add_provenance("warning: " + doubt);
   }
   return table;

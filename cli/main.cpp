@@ -91,6 +91,7 @@ int run(int argc, char** argv) {
     return static_cast<int>(fogbench::config::exit_status(status.error().code));
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return cannot_print();
+  fogbench::cli::print_notes_beside_result();
   return static_cast<int>(*status);
 }
 

@@ -121,6 +121,23 @@ void print_note(const std::string& message) {
   print_error("note: " + message);
 }
 
+namespace {
+
+std::vector<std::string>& notes_beside_result() {
+  static std::vector<std::string> notes;
+  return notes;
+}
+
+}  // namespace
+
+void note_beside_result(std::string message) {
+  notes_beside_result().push_back(std::move(message));
+}
+
+void print_notes_beside_result() {
+  for (const std::string& note : notes_beside_result()) print_note(note);
+}
+
 Error with_notes(Error error, const std::vector<std::string>& notes) {
   for (const std::string& note : notes) error.message += "; " + note;
   return error;

@@ -55,6 +55,9 @@ void print_json(const nlohmann::ordered_json& document);
 void print_error(const std::string& message);
 /// One line "fogbench: note: ..." on stderr: the result stands, but the reader should know.
 void print_note(const std::string& message);
+/// The same, printed when the command has ended with a result: an error is one line by itself.
+void note_beside_result(std::string message);
+void print_notes_beside_result();
 /// One line for an error and what was noted before it.
 Error with_notes(Error error, const std::vector<std::string>& notes);
 

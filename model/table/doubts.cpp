@@ -98,7 +98,7 @@ void doubt_rate(const Table& table, std::vector<std::string>& out) {
   constexpr double kLeastPart = 0.05;
   if (rate.middle > kLeastPart * kEarthRateDegPerH * kSecondsInHour && rate.middle < largest) {
     out.push_back(fmt::format(
-        "rate_deg_per_h is about {:.4g}, 3600 times {:.3g}: probably numbers in deg/h that were "
+        "rate_deg_per_h is about {:.4g}, 3600 times {:.3g}: perhaps numbers in deg/h that were "
         "taken for deg/s, as the Earth's rate is 15.04 deg/h (--unit says which)",
         rate.middle, rate.middle / kSecondsInHour));
   }

@@ -95,7 +95,7 @@ TEST(Doubts, NameTheLikelyCause) {
   EXPECT_THAT(doubts(timed({0, 0, 0, 1, 1, 1, 2}, {1, 1, 1, 1, 1, 1, 1})),
               ElementsAre(HasSubstr("repeats in 4 of 7 rows")));
   EXPECT_THAT(doubts(timed({0, 1, 2}, {36000, 36001, 36002})),
-              ElementsAre(HasSubstr("probably numbers in deg/h that were taken for deg/s")));
+              ElementsAre(HasSubstr("perhaps numbers in deg/h that were taken for deg/s")));
   const auto with = [](const char* name, std::vector<double> values) {
     Table table = timed({0, 1, 2}, {1, 1, 1});
     table.set_column(name, std::move(values));

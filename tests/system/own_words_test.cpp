@@ -115,6 +115,13 @@ TEST_F(OwnWordsTest, AFormulaWithAnInnerParameterIsFittedAsHelpShowsIt) {
       0);
 }
 
+/// What was recognised in the table is said beside a result, and not in front of an error.
+TEST_F(OwnWordsTest, ATableOfAnotherProgramThatCannotBeFittedGetsOneLine) {
+  const std::string table =
+      written("short.csv", "zeit;T (K);gyro [deg/s]\n0;294,15;0,0001\n60;294,25;0,0001\n");
+  expect_refused(fogbench({"fit", table, "--model", "thermal", "-o", path("x.json")}), 3, "rows");
+}
+
 /// The gyro is described, measured twice, diagnosed on the first run and corrected on the second,
 /// which took no part in the fit: what is left there is noise.
 TEST_F(OwnWordsTest, TwoHiddenEffectsAreFoundAddedAndTakenOutOfAnotherRun) {
