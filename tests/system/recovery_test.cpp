@@ -140,7 +140,11 @@ TEST_F(RecoveryTest, AFullDiskHoldsTheRunUntilThereIsRoom) {
   EXPECT_EQ(status()["run"]["points"], waiting["run"]["points"]);
   limit_files(RLIM_INFINITY);
   EXPECT_EQ(fogbench({"watch"}).status, 0);
-  EXPECT_EQ(points_in_order("1"), 40U);
+  // None is lost. Where the room ends between a point and what else its step writes, the step is
+  // measured once more.
+  const std::size_t points = points_in_order("1");
+  EXPECT_GE(points, 40U);
+  EXPECT_LE(points, 41U);
   EXPECT_TRUE(has_event(stored("1"), "nothing was recorded for"));
 }
 
